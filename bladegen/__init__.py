@@ -1,0 +1,72 @@
+"""bladegen: wind turbine blades from spanwise tables to STEP solids and meshes.
+
+>>> import bladegen as bg
+>>> definition = bg.read("iea15mw")
+>>> blade = bg.Blade.from_definition(definition, landmarks=401)
+>>> blade.sections([0.0, 0.5, 1.0]).shape
+(3, 401, 3)
+
+The names below are loaded when first used, so that ``import bladegen`` stays fast.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from bladegen.blade import Blade
+    from bladegen.definition import (
+        Airfoil,
+        BladeDefinition,
+        Distribution,
+        ReferenceAxis,
+        Rotor,
+        Station,
+    )
+    from bladegen.errors import BladegenError, Finding
+    from bladegen.export import export
+    from bladegen.readers import bundled, read
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "Airfoil": "definition",
+    "Blade": "blade",
+    "BladeDefinition": "definition",
+    "BladegenError": "errors",
+    "Distribution": "definition",
+    "Finding": "errors",
+    "ReferenceAxis": "definition",
+    "Rotor": "definition",
+    "Station": "definition",
+    "bundled": "readers",
+    "export": "export",
+    "read": "readers",
+}
+
+__all__ = [
+    "Airfoil",
+    "Blade",
+    "BladeDefinition",
+    "BladegenError",
+    "Distribution",
+    "Finding",
+    "ReferenceAxis",
+    "Rotor",
+    "Station",
+    "__version__",
+    "bundled",
+    "export",
+    "read",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'bladegen' has no attribute {name!r}")
+    value = getattr(import_module(f"bladegen.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

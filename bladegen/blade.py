@@ -1,0 +1,342 @@
+"""A blade is a pure function of span: its shape in chords, and its sections in space.
+
+`Blade.from_definition` runs the paper's pipeline: landmarks, standardisation, clustering, a
+path on Gr(n, 2) with splines for the affine part, and the planform.  A `Blade` is a frozen
+value; everything about it follows from its fields.  Metres and radians, blade frame.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from bladegen import affine
+from bladegen.arrays import Array, ArrayLike, readonly
+from bladegen.definition import BladeDefinition
+from bladegen.edges import MinimumThickness, TrailingEdge
+from bladegen.errors import DefinitionError, Finding
+from bladegen.interpolation import (
+    Parameter,
+    Path,
+    PathMaker,
+    SectionSpline,
+    geodesic_path,
+    spline_path,
+)
+from bladegen.landmarks import Contour, Spacing, clustered, contour, landmark_parameters
+from bladegen.planform import Planform, SectionPlanes, normal_to_axis
+from bladegen.sections import SectionSplines
+
+__all__ = ["PATHS", "Blade"]
+
+PATHS: dict[str, PathMaker] = {"geodesic": geodesic_path, "spline": spline_path}
+RESOLVING_SPANS = 1001  # spans at which bends are looked for
+RESOLVING_LANDMARKS = 40  # landmarks that are watched for bends, about
+EVEN_SHARE = 0.35  # of the stations: spread evenly, so that no part of the span is left bare
+MINIMUM_EDGE = MinimumThickness()
+SAME_SHAPE = 1e-10  # of the largest singular value; stations may repeat an airfoil
+
+
+@dataclass(frozen=True, eq=False)
+class Blade:
+    """A blade as a function of span.
+
+    Parameters
+    ----------
+    definition : BladeDefinition
+        Planform, axis and thickness distribution.
+    u : (n,) array
+        Landmark parameters, 0 at the suction side's trailing edge, 0.5 at the leading edge.
+    eta : (s,) array
+        Span fractions of the stations.
+    points : (s, n, 2) array
+        The stations' shapes: orthonormal, centred representatives on Gr(n, 2).
+    M, b : (s, 2, 2), (s, 2) arrays
+        Their affine maps, ``airfoil = points @ M + b``.
+    path : callable
+        How stations are joined: `interpolation.geodesic_path` or `spline_path`.
+    planes : callable
+        Section planes: `planform.normal_to_axis` or `normal_to_z`.
+    trailing_edge : callable
+        How trailing edges are finished: `edges.MinimumThickness`, `AsGiven` or `Sharp`.
+    contours : tuple of Contour, optional
+        The stations' airfoils between their landmarks; without them, splines through the
+        landmarks.
+    findings : tuple of Finding
+        What was mended or looks odd.
+    """
+
+    definition: BladeDefinition
+    u: Array
+    eta: Array
+    points: Array
+    M: Array
+    b: Array
+    path: PathMaker = geodesic_path
+    planes: SectionPlanes = normal_to_axis
+    trailing_edge: TrailingEdge = MINIMUM_EDGE
+    contours: tuple[Contour, ...] | None = None
+    findings: tuple[Finding, ...] = ()
+
+    def __post_init__(self) -> None:
+        for field in ("u", "eta", "points", "M", "b"):
+            object.__setattr__(self, field, readonly(getattr(self, field)))
+
+    @classmethod
+    def from_definition(
+        cls,
+        definition: BladeDefinition,
+        *,
+        landmarks: int = 401,
+        path: str = "geodesic",
+        planes: SectionPlanes = normal_to_axis,
+        trailing_edge: TrailingEdge = MINIMUM_EDGE,
+        spacing: Spacing = clustered,
+    ) -> "Blade":
+        """Build a blade from its definition.
+
+        Parameters
+        ----------
+        definition : BladeDefinition
+            What the designer gives.
+        landmarks : int
+            Landmarks a section, odd.
+        path : str
+            "geodesic" (the paper's) or "spline" (smooth).
+        planes : callable
+            Section planes, normal to the reference axis by default.
+        trailing_edge : callable
+            Finish of the trailing edges in `sections`; at least 2 mm thick by default.
+        spacing : callable
+            Spacing of the landmarks along each side.
+
+        Raises
+        ------
+        DefinitionError
+            If `path` is no path or an airfoil is unusable.
+        """
+        if path not in PATHS:
+            raise DefinitionError(f"path: got {path!r}, allowed are {', '.join(PATHS)}")
+        u = landmark_parameters(landmarks, spacing)
+        curves = {id(s.airfoil): contour(s.airfoil.coordinates) for s in definition.stations}
+        shapes = {key: curve.landmarks(u) for key, curve in curves.items()}
+        keys = [id(station.airfoil) for station in definition.stations]
+        X, M, b = affine.standardise(np.stack([shapes[key] for key in keys]))
+        contours = tuple(curves[key] for key in keys)
+        return cls(
+            definition=definition,
+            u=u,
+            eta=np.array([station.eta for station in definition.stations]),
+            points=X,
+            M=M,
+            b=b,
+            path=PATHS[path],
+            planes=planes,
+            trailing_edge=trailing_edge,
+            contours=contours,
+            findings=definition.findings + _opened(definition, contours),
+        )
+
+    @property
+    def name(self) -> str:
+        """The definition's name."""
+        return self.definition.name
+
+    @property
+    def length(self) -> float:
+        """Blade length along z [m]."""
+        return self.definition.length
+
+    def chord(self, eta: ArrayLike) -> Array:
+        """Return the chord [m] at `eta`: the definition's spline."""
+        return self.definition.chord(eta)
+
+    def twist(self, eta: ArrayLike) -> Array:
+        """Return the twist [rad] at `eta`: the definition's spline."""
+        return self.definition.twist(eta)
+
+    def axis(self, eta: ArrayLike) -> Array:
+        """Return the reference axis (..., 3) [m] at `eta`."""
+        return self.definition.axis(eta)
+
+    @cached_property
+    def planform(self) -> Planform:
+        """Where sections stand."""
+        return Planform(self.definition, self.planes)
+
+    @cached_property
+    def _splines(self) -> SectionSplines:
+        return SectionSplines(self.u)
+
+    @cached_property
+    def parameter(self) -> Parameter:
+        """The path's parameter as a function of span."""
+        return Parameter(self.eta, self.definition.relative_thickness)
+
+    @cached_property
+    def _joined(self) -> tuple[Path, SectionSpline]:
+        # A representative's rotation is moved to the tip's M first, so that no result
+        # depends on which representatives `points` holds.
+        knots = self.parameter.knots
+        angle, _ = affine.polar(self.M[-1:])
+        turn = affine.from_polar(angle, np.zeros((1, 2, 2)))
+        path, M = self.path(knots, self.points @ turn, turn.mT @ self.M)
+        return path, SectionSpline(knots, M, self.b)
+
+    @property
+    def shape_path(self) -> Path:
+        """The path on the Grassmannian, a function of `parameter`."""
+        return self._joined[0]
+
+    def profiles(self, eta: ArrayLike, u: Array | None = None) -> Array:
+        """Return unit-chord sections, as the definition gives them.
+
+        Parameters
+        ----------
+        eta : (...) array
+            Span fractions.
+        u : (m,) array, optional
+            Other landmark parameters than the blade's own, symmetric about 0.5: points that
+            lie between its landmarks on the very same sections.
+
+        Returns
+        -------
+        (..., n, 2) array
+            Landmarks in chords, airfoil axes: unit chord, and the distribution's relative
+            thickness where there is one, exactly.  Trailing edges are as given.
+        """
+        spans = _spans(eta)
+        flat = spans.reshape(-1)
+        path, spline = self._joined
+        q = self.parameter(flat)
+        X, (M, b) = path(q), spline(q)
+        points = affine.restore(X, M, b)
+        thickness = self.definition.relative_thickness
+        A, c = self._splines.normalising(points, None if thickness is None else thickness(flat))
+        if u is not None:
+            points = affine.restore(self._between(u) @ X, M, b)
+        result = affine.restore(points, A, c)
+        return result.reshape(*spans.shape, *result.shape[1:])
+
+    def sections(self, eta: ArrayLike, u: Array | None = None) -> Array:
+        """Return sections in space, with finished trailing edges.
+
+        Parameters
+        ----------
+        eta : (...) array
+            Span fractions.
+        u : (m,) array, optional
+            Other landmark parameters, as for `profiles`.
+
+        Returns
+        -------
+        (..., n, 3) array
+            Landmarks [m], blade frame, trailing edge -> suction -> leading edge -> pressure.
+        """
+        spans = _spans(eta)
+        flat = spans.reshape(-1)
+        finished = self.trailing_edge(self.profiles(flat, u), self.chord(flat))
+        placed = self.planform.place(finished, flat)
+        return placed.reshape(*spans.shape, *placed.shape[1:])
+
+    def _between(self, u: Array) -> Array:
+        """Return the linear map (m, n) from a path's landmarks to its points at `u`.
+
+        Paths run in the span of the stations' shapes, so a map that is right for these is
+        right for all that lies between them.
+        """
+        if self.contours is None:
+            return SectionSplines(self.u).values(u)
+        airfoils = np.stack([contour.landmarks(u) for contour in self.contours])
+        finer = (airfoils - self.b[:, None]) @ np.linalg.inv(self.M)
+        columns = np.concatenate([*self.points], axis=1)
+        return np.concatenate([*finer], axis=1) @ np.linalg.pinv(columns, rcond=SAME_SHAPE)
+
+    def with_trailing_edge(self, trailing_edge: TrailingEdge) -> "Blade":
+        """Return the blade with another finish of its trailing edges."""
+        return replace(self, trailing_edge=trailing_edge)
+
+    def stations(self, count: int = 120) -> Array:
+        """Return span fractions that resolve shape, planform and axis.
+
+        Parameters
+        ----------
+        count : int
+            How many; at least as many as the fixed ones.
+
+        Returns
+        -------
+        (count,) array
+            Increasing; the root, the tip and the definition's stations are among them, the
+            others crowd where the surface bends along the span.
+
+        Raises
+        ------
+        DefinitionError
+            If `count` is too small to hold the fixed ones.
+        """
+        fixed = np.unique(np.concatenate([[0.0], self.eta, [1.0]]))
+        if count < len(fixed):
+            raise DefinitionError(
+                f"stations: got {count}, at least {len(fixed)} are needed: root, tip and the "
+                "definition's own"
+            )
+        grid, crowding = self._crowding
+        marks = np.interp(fixed, grid, crowding)
+        share = np.diff(marks) / (marks[-1] - marks[0]) * (count - len(fixed))
+        inner = np.floor(share).astype(int)
+        rest = count - len(fixed) - int(inner.sum())
+        inner[np.argsort(inner - share, kind="stable")[:rest]] += 1
+        cells = np.repeat(np.arange(len(inner)), inner + 1)
+        within = np.arange(len(cells)) - np.concatenate([[0], np.cumsum(inner + 1)[:-1]])[cells]
+        level = marks[cells] + np.diff(marks)[cells] * within / (inner + 1)[cells]
+        spans = np.interp(level, crowding, grid)
+        spans[within == 0] = fixed[:-1]
+        return np.append(spans, 1.0)
+
+    @cached_property
+    def _crowding(self) -> tuple[Array, Array]:
+        """Span fractions and the cumulative density of stations there, strictly increasing.
+
+        The density is the square root of the surface's second difference along the span: it
+        spreads the error of a piecewise linear or cubic surface evenly.
+        """
+        grid = np.linspace(0.0, 1.0, RESOLVING_SPANS)
+        some = slice(None, None, max(1, len(self.u) // RESOLVING_LANDMARKS))
+        points = self.sections(grid)[:, some]
+        bend = np.abs(np.diff(points, 2, axis=0)).max(axis=(1, 2))
+        density = np.sqrt(np.concatenate([bend[:1], bend, bend[-1:]]))
+        density = np.convolve(np.pad(density, 2, mode="edge"), np.full(5, 0.2), mode="valid")
+        total = density.sum()
+        if total > 0:
+            density = (1.0 - EVEN_SHARE) * density / total + EVEN_SHARE / len(grid)
+        else:
+            density = np.full(len(grid), 1.0 / len(grid))
+        steps = 0.5 * (density[1:] + density[:-1])
+        return grid, np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _spans(eta: ArrayLike) -> Array:
+    """Return span fractions as an array, or say which is not allowed."""
+    spans = np.asarray(eta, dtype=np.float64)
+    if not bool(np.all((spans >= 0) & (spans <= 1))):
+        bad = spans[~((spans >= 0) & (spans <= 1))][0]
+        raise DefinitionError(f"eta: got {bad:g}, allowed is 0 (root) to 1 (tip)")
+    return spans
+
+
+def _opened(definition: BladeDefinition, contours: tuple[Contour, ...]) -> tuple[Finding, ...]:
+    """Say which airfoils had a blunt base that was closed to one point."""
+    heights = {
+        station.airfoil.name: contour.opened
+        for station, contour in zip(definition.stations, contours, strict=True)
+    }
+    return tuple(
+        Finding(
+            f"airfoil {name}",
+            f"a blunt base of {height:.4f} chord is closed to one point; taken as an open "
+            "trailing edge",
+        )
+        for name, height in heights.items()
+        if height
+    )

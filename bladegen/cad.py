@@ -1,0 +1,354 @@
+"""A blade's B-spline net to a closed solid with named faces, and to a STEP file.
+
+The net is handed to OCCT as poles, knots and multiplicities, cut at the leading edge into a
+suction and a pressure side, and closed by a trailing-edge strip, a root plane and a tip.
+Solids are in millimetres, as STEP files of machine parts are; everything else is in metres.
+cadquery and OCP are imported when first needed.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.arrays import Array
+from bladegen.blade import Blade
+from bladegen.errors import CadError
+from bladegen.net import DEGREE, Deviation, SurfaceNet, fitted
+
+__all__ = [
+    "DEFAULT_TOLERANCE",
+    "Solid",
+    "Tip",
+    "area",
+    "flat_tip",
+    "is_valid",
+    "read_step",
+    "round_tip",
+    "solid",
+    "volume",
+    "write_step",
+]
+
+MILLIMETRES = 1000.0
+SEWING = 1e-4  # mm; edges of one net meet to rounding, so this is slack, not repair
+VOLUME_TOLERANCE = 1e-6  # relative; OCCT's default quadrature is off by 3e-4 on these faces
+CLOSED_EDGE = 1e-7  # m; a trailing edge thinner than this everywhere is sharp
+DEFAULT_TOLERANCE = 0.3e-3  # m
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A valid closed solid of a blade.
+
+    Parameters
+    ----------
+    shape : TopoDS_Solid
+        OCCT's solid [mm].
+    faces : tuple of (str, TopoDS_Face)
+        Its faces by name.
+    net : SurfaceNet
+        The surface of its two sides [m].
+    deviation : Deviation
+        Of the net from the blade.
+    name : str
+        The blade's name.
+    """
+
+    shape: Any
+    faces: tuple[tuple[str, Any], ...]
+    net: SurfaceNet
+    deviation: Deviation
+    name: str
+
+    @property
+    def volume(self) -> float:
+        """Volume [m3], by OCCT, to 1e-6."""
+        return volume(self.shape) / MILLIMETRES**3
+
+    @property
+    def area(self) -> float:
+        """Surface area [m2], by OCCT."""
+        return area(self.shape) / MILLIMETRES**2
+
+
+Tip = Callable[[SurfaceNet, bool], list[tuple[str, Any]]]
+
+
+def flat_tip(net: SurfaceNet, blunt: bool) -> list[tuple[str, Any]]:
+    """Close the tip by the plane of its last section."""
+    return [("tip", _cap(net, 1.0, blunt))]
+
+
+def round_tip(net: SurfaceNet, blunt: bool) -> list[tuple[str, Any]]:
+    """Close the tip by a cap that leaves both sides tangentially and is round across.
+
+    Opposite poles are joined by cubic Bezier arcs whose inner poles lie 4/3 of half their
+    distance along the blade, the usual arc of 180 degrees: an ellipse to 2 % of its size.
+    """
+    suction, pressure = net.halves()
+    start, end = suction.poles, pressure.poles[::-1]
+    reach = 2.0 / 3.0 * np.linalg.norm(start[:, -1] - end[:, -1], axis=-1, keepdims=True)
+
+    def lifted(side: Array) -> Array:
+        along = side[:, -1] - side[:, -2]
+        unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
+        lift: Array = side[:, -1] + reach * unit
+        return lift
+
+    poles = np.stack([start[:, -1], lifted(start), lifted(end), end[:, -1]], axis=1)
+    surface = _surface(poles, suction.u_knots, _BEZIER)
+    faces = [("tip", _face(surface))]
+    if blunt:
+        straight = np.linspace(poles[0, 0], poles[0, -1], DEGREE + 1)
+        edge = _surface(np.stack([poles[0], straight]), _LINEAR, _BEZIER)
+        faces.append(("tip trailing edge", _face(edge)))
+    return faces
+
+
+def solid(
+    blade: Blade,
+    *,
+    tolerance: float = DEFAULT_TOLERANCE,
+    sections: int | None = None,
+    tip: Tip = flat_tip,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Solid:
+    """Make a blade's solid.
+
+    Parameters
+    ----------
+    blade : Blade
+        What to make; its trailing-edge policy decides between a strip and a sharp edge.
+    tolerance : float
+        Largest distance to the blade's sections aimed at [m]; `Solid.deviation` says what
+        was reached.
+    sections : int, optional
+        Use exactly so many sections instead.
+    tip : callable
+        `flat_tip` or `round_tip`.
+    progress : callable
+        Told what is being done.
+
+    Raises
+    ------
+    CadError
+        If the result is not one valid closed solid.
+    """
+    net, deviation = fitted(blade, tolerance, sections=sections, progress=progress)
+    gap = np.linalg.norm(net.poles[0] - net.poles[-1], axis=-1)
+    blunt = bool(gap.max() > CLOSED_EDGE)
+    if blunt and gap.min() <= CLOSED_EDGE:
+        raise CadError(
+            f"{blade.name}: the trailing edge is sharp at some spans and blunt at others; give "
+            "it a minimum thickness or make it sharp everywhere"
+        )
+    progress("building the solid")
+    scaled = replace(net, poles=net.poles * MILLIMETRES)
+    suction, pressure = (_surface(h.poles, h.u_knots, h.v_knots) for h in scaled.halves())
+    faces = [("suction side", _face(suction)), ("pressure side", _face(pressure))]
+    if blunt:
+        strip = np.stack([scaled.poles[-1], scaled.poles[0]])
+        faces.append(("trailing edge", _face(_surface(strip, _LINEAR, net.v_knots))))
+    faces += [("root", _cap(scaled, 0.0, blunt)), *tip(scaled, blunt)]
+    shape, named = _closed(faces, blade.name)
+    return Solid(shape, named, net, deviation, blade.name)
+
+
+def write_step(solid: Solid, path: Path) -> None:
+    """Write a solid as STEP AP242 in millimetres, its faces named.
+
+    Raises
+    ------
+    CadError
+        If OCCT cannot write the file.
+    """
+    from OCP.Interface import Interface_Static
+    from OCP.STEPConstruct import STEPConstruct
+    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
+    from OCP.TCollection import TCollection_HAsciiString
+
+    with _quietly():
+        STEPControl_Controller.Init_s()  # before it, the settings below have no effect
+        for setting, value in (
+            ("write.step.schema", "AP242DIS"),
+            ("write.step.unit", "MM"),
+            ("write.step.product.name", _ascii(solid.name)),
+        ):
+            if not Interface_Static.SetCVal_s(setting, value):
+                raise CadError(f"{path}: OCCT does not take {setting} = {value}")
+        writer = STEPControl_Writer()
+        writer.Transfer(solid.shape, STEPControl_AsIs)
+        process = writer.WS().TransferWriter().FinderProcess()
+        for name, face in solid.faces:
+            STEPConstruct.FindEntity_s(process, face).SetName(TCollection_HAsciiString(name))
+        status = writer.Write(str(path))
+    if status.name != "IFSelect_RetDone":
+        raise CadError(f"{path}: OCCT could not write the STEP file ({status.name})")
+
+
+def read_step(path: Path) -> Any:
+    """Read a STEP file's shape [mm].
+
+    Raises
+    ------
+    CadError
+        If the file holds no shape that OCCT understands.
+    """
+    from OCP.STEPControl import STEPControl_Reader
+
+    with _quietly():
+        reader = STEPControl_Reader()
+        if reader.ReadFile(str(path)).name != "IFSelect_RetDone" or not reader.TransferRoots():
+            raise CadError(f"{path}: not a STEP file that OCCT can read")
+        return reader.OneShape()
+
+
+def volume(shape: Any) -> float:
+    """Return a shape's volume [mm3], to 1e-6 of it."""
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties, VOLUME_TOLERANCE, False, False)
+    return float(properties.Mass())
+
+
+def area(shape: Any) -> float:
+    """Return a shape's surface area [mm2]."""
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, properties, VOLUME_TOLERANCE, False)
+    return float(properties.Mass())
+
+
+def is_valid(shape: Any) -> bool:
+    """Tell whether OCCT finds no fault with a shape's topology and geometry."""
+    from OCP.BRepCheck import BRepCheck_Analyzer
+
+    return bool(BRepCheck_Analyzer(shape).IsValid())
+
+
+_LINEAR = np.array([0.0, 0.0, 1.0, 1.0])
+_BEZIER = np.repeat([0.0, 1.0], DEGREE + 1)
+
+
+def _surface(poles: Array, u_knots: Array, v_knots: Array) -> Any:
+    """Hand a net to OCCT; degrees follow from the numbers of poles and knots."""
+    from OCP.Geom import Geom_BSplineSurface
+    from OCP.gp import gp_Pnt
+    from OCP.TColgp import TColgp_Array2OfPnt
+    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+
+    rows, columns = poles.shape[:2]
+    points = TColgp_Array2OfPnt(1, rows, 1, columns)
+    for i, row in enumerate(poles.tolist(), start=1):
+        for j, (x, y, z) in enumerate(row, start=1):
+            points.SetValue(i, j, gp_Pnt(x, y, z))
+
+    arrays = []
+    for knots in (u_knots, v_knots):
+        values, counts = np.unique(knots, return_counts=True)
+        reals = TColStd_Array1OfReal(1, len(values))
+        integers = TColStd_Array1OfInteger(1, len(values))
+        for i, (value, count) in enumerate(
+            zip(values.tolist(), counts.tolist(), strict=True), start=1
+        ):
+            reals.SetValue(i, value)
+            integers.SetValue(i, count)
+        arrays.append((reals, integers))
+    (u, mu), (v, mv) = arrays
+    degrees = len(u_knots) - rows - 1, len(v_knots) - columns - 1
+    return Geom_BSplineSurface(points, u, v, mu, mv, *degrees, False, False)
+
+
+def _face(surface: Any) -> Any:
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+
+    return BRepBuilderAPI_MakeFace(surface, 1e-7).Face()
+
+
+def _edge(curve: Any) -> Any:
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+
+    return BRepBuilderAPI_MakeEdge(curve).Edge()
+
+
+def _line(start: Array, end: Array) -> Any:
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.gp import gp_Pnt
+
+    return BRepBuilderAPI_MakeEdge(gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist())).Edge()
+
+
+def _cap(net: SurfaceNet, v: float, blunt: bool) -> Any:
+    """Make the plane face inside the section at the root (v = 0) or tip (v = 1)."""
+    suction, pressure = (_surface(h.poles, h.u_knots, h.v_knots) for h in net.halves())
+    edges = [_edge(suction.VIso(v)), _edge(pressure.VIso(v))]
+    if blunt:
+        row = net.poles[:, 0 if v == 0.0 else -1]
+        edges.append(_line(row[-1], row[0]))
+    return _filled(edges)
+
+
+def _filled(edges: list[Any]) -> Any:
+    """Make the plane face that a closed loop of edges encloses."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+
+    wire = BRepBuilderAPI_MakeWire()
+    for edge in edges:
+        wire.Add(edge)
+    face = BRepBuilderAPI_MakeFace(wire.Wire(), True)
+    if not face.IsDone():
+        raise CadError("an end of the blade does not lie in a plane")
+    return face.Face()
+
+
+def _closed(faces: list[tuple[str, Any]], name: str) -> tuple[Any, tuple[tuple[str, Any], ...]]:
+    """Sew faces to one outward solid; return it and its faces by name, or say what is wrong."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
+    from OCP.BRepLib import BRepLib
+    from OCP.TopAbs import TopAbs_SHELL
+    from OCP.TopoDS import TopoDS
+
+    sewing = BRepBuilderAPI_Sewing(SEWING)
+    for _, face in faces:
+        sewing.Add(face)
+    sewing.Perform()
+    shell = sewing.SewedShape()
+    if sewing.NbFreeEdges() or shell.ShapeType() != TopAbs_SHELL:
+        raise CadError(f"{name}: the faces leave {sewing.NbFreeEdges()} free edges, allowed is 0")
+    solid = BRepBuilderAPI_MakeSolid(TopoDS.Shell_s(shell)).Solid()
+    BRepLib.OrientClosedSolid_s(solid)
+    if not is_valid(solid):
+        raise CadError(f"{name}: OCCT's check finds the solid invalid")
+    named = tuple(
+        (label, sewing.Modified(face) if sewing.IsModified(face) else face) for label, face in faces
+    )
+    return solid, named
+
+
+def _ascii(text: str) -> str:
+    """Return text as STEP files hold it."""
+    return text.encode("ascii", "replace").decode("ascii")
+
+
+@contextmanager
+def _quietly() -> Iterator[None]:
+    """Keep OCCT's remarks off the terminal; its failures are checked for."""
+    from OCP.Message import Message, Message_Gravity
+
+    printers = Message.DefaultMessenger_s().Printers()
+    levels = [printer.GetTraceLevel() for printer in printers]
+    for printer in printers:
+        printer.SetTraceLevel(Message_Gravity.Message_Fail)
+    try:
+        yield
+    finally:
+        for printer, level in zip(printers, levels, strict=True):
+            printer.SetTraceLevel(level)

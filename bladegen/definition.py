@@ -1,0 +1,334 @@
+"""Blade definitions: airfoils at stations and distributions over span, as a file gives them.
+
+Everything is in metres and radians, in the blade frame (origin at the root on the pitch
+axis, x to the suction side, y to the trailing edge, z to the tip).  Span is `eta` in
+[0, 1], root to tip: the nondimensional grid of the file, whatever it measures there, since
+the reference axis is given on the same grid.  Layout and names follow windIO.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from bladegen.arrays import Array, ArrayLike, readonly
+from bladegen.errors import DefinitionError, Finding
+
+__all__ = [
+    "Airfoil",
+    "BladeDefinition",
+    "Distribution",
+    "Interpolant",
+    "ReferenceAxis",
+    "Rotor",
+    "Station",
+    "pchip",
+    "stations_by_thickness",
+]
+
+MIN_AIRFOIL_POINTS = 3
+THICKNESS_RIPPLE = 1e-4  # published curves ripple by 1e-5 about the thinnest airfoil (DTU 10 MW)
+MAX_AIRFOIL_POINTS = 5_000  # far above any published airfoil (399); bounds time and memory
+
+
+class Interpolant(Protocol):
+    """A function of span with derivatives, as scipy's piecewise polynomials are."""
+
+    def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
+        """Return the `nu`-th derivative at `eta`."""
+        ...
+
+
+def pchip(grid: Array, values: Array) -> Interpolant:
+    """Interpolate monotonically between points (PCHIP), as windIO recommends."""
+    from scipy.interpolate import PchipInterpolator
+
+    interpolant: Interpolant = PchipInterpolator(grid, values)
+    return interpolant
+
+
+@dataclass(frozen=True)
+class Airfoil:
+    """A closed or open airfoil contour, as its file gives it.
+
+    Parameters
+    ----------
+    name : str
+        The airfoil's name; free text, never used as a path.
+    coordinates : (m, 2) array
+        Points in chords, trailing edge -> leading edge -> trailing edge, either side first.
+    relative_thickness : float, optional
+        Nominal thickness over chord, as the file states it.
+    """
+
+    name: str
+    coordinates: Array
+    relative_thickness: float | None = None
+
+    def __post_init__(self) -> None:
+        points = readonly(self.coordinates)
+        if points.ndim != 2 or points.shape[1] != 2:
+            raise DefinitionError(
+                f"airfoil {self.name!r}: coordinates must be rows of x and y, got shape "
+                f"{points.shape}"
+            )
+        if not MIN_AIRFOIL_POINTS <= len(points) <= MAX_AIRFOIL_POINTS:
+            raise DefinitionError(
+                f"airfoil {self.name!r}: {len(points)} points, allowed are "
+                f"{MIN_AIRFOIL_POINTS} to {MAX_AIRFOIL_POINTS}"
+            )
+        if not np.isfinite(points).all():
+            row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            raise DefinitionError(
+                f"airfoil {self.name!r}: point {row} is {tuple(points[row].tolist())}, "
+                "must be finite"
+            )
+        object.__setattr__(self, "coordinates", points)
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A quantity over span: values on a grid of its own, and the spline through them.
+
+    Parameters
+    ----------
+    grid : (m,) array
+        Span fractions, strictly increasing within [0, 1]; at least two.
+    values : (m,) array
+        The quantity at the grid, in SI units and radians.
+    spline : callable, optional
+        Makes the interpolant from grid and values; PCHIP by default.
+
+    Notes
+    -----
+    Outside its grid a distribution keeps its end values.
+    """
+
+    grid: Array
+    values: Array
+    spline: Callable[[Array, Array], Interpolant] = pchip
+
+    def __post_init__(self) -> None:
+        grid, values = readonly(self.grid), readonly(self.values)
+        if grid.ndim != 1 or grid.shape != values.shape:
+            raise DefinitionError(
+                f"grid and values must be lists of one length, got {grid.size} and {values.size}"
+            )
+        if len(grid) < 2:
+            raise DefinitionError(f"{len(grid)} grid points, at least 2 are needed")
+        for name, array in (("grid", grid), ("values", values)):
+            bad = np.flatnonzero(~np.isfinite(array))
+            if bad.size:
+                raise DefinitionError(f"{name}[{bad[0]}] is {array[bad[0]]:g}, must be finite")
+        if grid[0] < 0 or grid[-1] > 1:
+            raise DefinitionError(f"grid runs {grid[0]:g} to {grid[-1]:g}, allowed is 0 to 1")
+        bad = np.flatnonzero(np.diff(grid) <= 0)
+        if bad.size:
+            i = int(bad[0])
+            raise DefinitionError(
+                f"grid must increase strictly, got {grid[i]:g} then {grid[i + 1]:g} "
+                f"(entries {i} and {i + 1})"
+            )
+        object.__setattr__(self, "grid", grid)
+        object.__setattr__(self, "values", values)
+
+    @classmethod
+    def constant(cls, value: float) -> "Distribution":
+        """Return the distribution that is `value` everywhere."""
+        return cls(np.array([0.0, 1.0]), np.array([value, value]))
+
+    @cached_property
+    def _interpolant(self) -> Interpolant:
+        return self.spline(self.grid, self.values)
+
+    def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
+        """Return the quantity, or its `nu`-th derivative, at span fractions `eta`."""
+        eta = np.asarray(eta, dtype=np.float64)
+        inside = np.clip(eta, self.grid[0], self.grid[-1])
+        result = np.asarray(self._interpolant(inside, nu=nu))
+        return np.where(inside == eta, result, 0.0) if nu else result
+
+
+@dataclass(frozen=True)
+class Station:
+    """An airfoil at a span fraction."""
+
+    eta: float
+    airfoil: Airfoil
+
+
+@dataclass(frozen=True)
+class ReferenceAxis:
+    """The curve that carries the sections: x, y, z over span [m], blade frame."""
+
+    x: Distribution
+    y: Distribution
+    z: Distribution
+
+    def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
+        """Return points, or `nu`-th derivatives, of shape (..., 3) at `eta`."""
+        return np.stack([self.x(eta, nu), self.y(eta, nu), self.z(eta, nu)], axis=-1)
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """What a file says of the rotor around the blade; nothing here shapes the blade."""
+
+    blades: int = 3
+    hub_radius: float | None = None
+    diameter: float | None = None
+    cone: float | None = None
+    tilt: float | None = None
+
+
+@dataclass(frozen=True)
+class BladeDefinition:
+    """A blade as its designer defines it: airfoils at stations, distributions over span.
+
+    Parameters
+    ----------
+    name : str
+        Short name; free text, made safe before it becomes part of a file name.
+    stations : tuple of Station
+        At least two, at strictly increasing span fractions.
+    chord : Distribution
+        Chord [m], positive.
+    twist : Distribution
+        Twist [rad]; positive moves the leading edge upwind.
+    axis : ReferenceAxis
+        The reference axis [m]; z increases.
+    section_offset_y : Distribution, optional
+        Leading edge to reference axis along the chord [m] (windIO 2).
+    pitch_axis : Distribution, optional
+        The same as a fraction of the chord (windIO 1); exactly one of both is given.
+    section_offset_x : Distribution, optional
+        Axis offset normal to the chord, positive toward the suction side [m] (windIO 2).
+    relative_thickness : Distribution, optional
+        Thickness over chord; where given it rules between stations.
+    rotor : Rotor
+        Facts on the rotor.
+    description, source : str
+        Free text; the file it was read from.
+    findings : tuple of Finding
+        What was mended or looks odd.
+    """
+
+    name: str
+    stations: tuple[Station, ...]
+    chord: Distribution
+    twist: Distribution
+    axis: ReferenceAxis
+    section_offset_y: Distribution | None = None
+    pitch_axis: Distribution | None = None
+    section_offset_x: Distribution | None = None
+    relative_thickness: Distribution | None = None
+    rotor: Rotor = Rotor()
+    description: str = ""
+    source: str = ""
+    findings: tuple[Finding, ...] = ()
+
+    def __post_init__(self) -> None:
+        etas = [station.eta for station in self.stations]
+        if len(etas) < 2:
+            raise DefinitionError(f"{self.name}: {len(etas)} stations, at least 2 are needed")
+        if not (etas[0] >= 0 and etas[-1] <= 1 and bool(np.all(np.diff(etas) > 0))):
+            raise DefinitionError(
+                f"{self.name}: stations must increase strictly within 0 to 1, got "
+                + ", ".join(f"{eta:g}" for eta in etas)
+            )
+        if (self.section_offset_y is None) == (self.pitch_axis is None):
+            raise DefinitionError(
+                f"{self.name}: exactly one of section_offset_y and pitch_axis must be given"
+            )
+        self._require_positive("chord", self.chord, "m")
+        if self.relative_thickness is not None:
+            self._require_positive("relative_thickness", self.relative_thickness, "of chord")
+        z = self.axis.z
+        if not bool(np.all(np.diff(z.values) > 0)):
+            i = int(np.flatnonzero(np.diff(z.values) <= 0)[0])
+            raise DefinitionError(
+                f"{self.name}: reference axis z must increase from root to tip, got "
+                f"{z.values[i]:g} then {z.values[i + 1]:g} m at eta = {z.grid[i]:g} and "
+                f"{z.grid[i + 1]:g}"
+            )
+
+    def _require_positive(self, field: str, quantity: Distribution, unit: str) -> None:
+        bad = np.flatnonzero(quantity.values <= 0)
+        if bad.size:
+            i = int(bad[0])
+            raise DefinitionError(
+                f"{self.name}: {field} must be positive, got {quantity.values[i]:g} {unit} "
+                f"at eta = {quantity.grid[i]:g} (entry {i})"
+            )
+
+    def offset_y(self, eta: ArrayLike) -> Array:
+        """Return the distance from leading edge to reference axis along the chord [m]."""
+        if self.section_offset_y is not None:
+            return self.section_offset_y(eta)
+        assert self.pitch_axis is not None  # __post_init__ saw to it
+        return self.pitch_axis(eta) * self.chord(eta)
+
+    def offset_x(self, eta: ArrayLike) -> Array:
+        """Return the axis offset normal to the chord, positive toward suction [m]."""
+        if self.section_offset_x is None:
+            return np.zeros(np.shape(eta))
+        return self.section_offset_x(eta)
+
+    @property
+    def length(self) -> float:
+        """Blade length along z, root to tip [m]."""
+        return float(self.axis.z(1.0) - self.axis.z(0.0))
+
+
+def stations_by_thickness(
+    airfoils: Sequence[tuple[float, Airfoil]], relative_thickness: Distribution
+) -> tuple[Station, ...]:
+    """Place airfoils where the thickness distribution crosses their own thickness.
+
+    Parameters
+    ----------
+    airfoils : sequence of (thickness, Airfoil)
+        Each airfoil with its own relative thickness.
+    relative_thickness : Distribution
+        Thickness over span, falling from root to tip up to small ripples.
+
+    Returns
+    -------
+    tuple of Station
+        From thick to thin; the thickest and the thinnest hold to the ends of the blade.
+
+    Raises
+    ------
+    DefinitionError
+        If an airfoil's thickness is not crossed by the distribution.
+    """
+    grid = np.unique(np.concatenate([relative_thickness.grid, np.linspace(0.0, 1.0, 2001)]))
+    falling = np.minimum.accumulate(relative_thickness(grid))
+    ordered = sorted(airfoils, key=lambda pair: -pair[0])
+    stations = []
+    for thickness, airfoil in ordered:
+        first = int(np.argmax(falling <= thickness + THICKNESS_RIPPLE))
+        if falling[first] > thickness + THICKNESS_RIPPLE or falling[0] < thickness:
+            raise DefinitionError(
+                f"airfoil {airfoil.name!r}: relative thickness {thickness:g} is not met by the "
+                f"distribution, which runs from {falling[0]:g} to {falling[-1]:g}"
+            )
+        stations.append(Station(_crossing(relative_thickness, grid, first, thickness), airfoil))
+    if stations[0].eta > 0:
+        stations.insert(0, Station(0.0, stations[0].airfoil))
+    if stations[-1].eta < 1:
+        stations.append(Station(1.0, stations[-1].airfoil))
+    return tuple(stations)
+
+
+def _crossing(quantity: Distribution, grid: Array, first: int, level: float) -> float:
+    """Bisect for the place in (grid[first - 1], grid[first]] where `quantity` meets `level`."""
+    if first == 0:
+        return float(grid[0])
+    low, high = float(grid[first - 1]), float(grid[first])
+    for _ in range(60):  # halves 5e-4 to below the spacing of doubles
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if quantity(middle) > level else (low, middle)
+    return high

@@ -1,0 +1,78 @@
+"""What can go wrong, and what is worth saying though nothing went wrong.
+
+Every error a user can meet is a `BladegenError`: one line that names the file, the field,
+the value and what is allowed.  A `Finding` is a remark on data that was accepted.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+__all__ = [
+    "BladegenError",
+    "CadError",
+    "DefinitionError",
+    "ExportError",
+    "FileError",
+    "Finding",
+    "GeometryError",
+    "RenderError",
+    "ToleranceError",
+]
+
+
+class BladegenError(Exception):
+    """The base of every error that bladegen raises on purpose."""
+
+
+class DefinitionError(BladegenError):
+    """A blade definition, or a part of one, holds a value that is not allowed."""
+
+
+class FileError(BladegenError):
+    """A file cannot be found, read or parsed, or holds problems.
+
+    Parameters
+    ----------
+    source : str
+        The file, as the user named it.
+    problems : sequence of str
+        Each problem with its place inside the file, the value and what is allowed.
+    """
+
+    def __init__(self, source: str, problems: Sequence[str]) -> None:
+        self.source = source
+        self.problems = tuple(problems)
+        count = len(self.problems)
+        head = f"{source}: " if count == 1 else f"{source}: {count} problems: "
+        super().__init__(head + "; ".join(self.problems))
+
+
+class GeometryError(BladegenError):
+    """A computation on shapes has no answer for the values it was given."""
+
+
+class CadError(BladegenError):
+    """A solid could not be made, or is not the valid closed solid it should be."""
+
+
+class ToleranceError(CadError):
+    """A solid was made, but deviates from the blade by more than was asked for."""
+
+
+class ExportError(BladegenError):
+    """A file cannot be written in the format or at the place asked for."""
+
+
+class RenderError(BladegenError):
+    """This machine cannot render a picture."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A remark on data that was accepted: where, and what was seen or mended."""
+
+    where: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.message}"

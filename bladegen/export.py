@@ -1,0 +1,222 @@
+"""A blade to a file, by suffix: one row a format in `FORMATS`.
+
+A new exporter needs a function that writes a product to a path, and a row that says from
+which product: the solid, the mesh, or the blade itself.  Files appear whole or not at all.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from bladegen import cad, mesh, preview
+from bladegen.blade import Blade
+from bladegen.errors import ExportError, ToleranceError
+from bladegen.files import replacing
+
+__all__ = ["FORMATS", "UNITS", "Format", "Options", "Products", "export", "format_of", "write"]
+
+UNITS = {"m": 1.0, "mm": 1000.0}
+STL_HEADER = 80  # bytes of free text at the start of a binary STL file
+
+
+@dataclass(frozen=True)
+class Options:
+    """How products are made; each format takes what concerns it.
+
+    Parameters
+    ----------
+    tolerance : float
+        Solids: largest distance to the blade's sections [m].
+    sections : int, optional
+        Solids: exactly so many sections instead of as many as the tolerance needs.
+    stations : int
+        Meshes: how many sections.
+    tip : callable
+        Solids: `cad.flat_tip` or `cad.round_tip`.
+    unit : str
+        Meshes: "m" or "mm".  STEP and 3MF are always in millimetres, GLB in metres.
+    """
+
+    tolerance: float = cad.DEFAULT_TOLERANCE
+    sections: int | None = None
+    stations: int = mesh.SECTIONS
+    tip: cad.Tip = cad.flat_tip
+    unit: str = "m"
+
+    def __post_init__(self) -> None:
+        if self.unit not in UNITS:
+            raise ExportError(f"unit: got {self.unit!r}, allowed are {', '.join(UNITS)}")
+        if not 0 < self.tolerance < 1:
+            raise ExportError(
+                f"tolerance: got {self.tolerance:g} m, allowed is more than 0 and less than 1 m"
+            )
+
+
+@dataclass
+class Products:
+    """What a blade's files are made from, each made once and when first asked for."""
+
+    blade: Blade
+    options: Options = field(default_factory=Options)
+    progress: Callable[[str], None] = lambda _: None
+    _made: dict[str, Any] = field(default_factory=dict)
+
+    def solid(self) -> cad.Solid:
+        """The closed solid."""
+        options = self.options
+        return self._once(  # type: ignore[no-any-return]
+            "solid",
+            lambda: cad.solid(
+                self.blade,
+                tolerance=options.tolerance,
+                sections=options.sections,
+                tip=options.tip,
+                progress=self.progress,
+            ),
+        )
+
+    def mesh(self) -> mesh.TriangleMesh:
+        """The triangle mesh."""
+        self.progress("meshing")
+        return self._once(  # type: ignore[no-any-return]
+            "mesh", lambda: mesh.from_blade(self.blade, stations=self.options.stations)
+        )
+
+    def _once(self, name: str, make: Callable[[], Any]) -> Any:
+        if name not in self._made:
+            self._made[name] = make()
+        return self._made[name]
+
+
+Writer = Callable[[Products, Path], None]
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format: what it is, and how a blade's products are written to it."""
+
+    description: str
+    write: Writer
+
+
+def _write_step(products: Products, path: Path) -> None:
+    cad.write_step(products.solid(), path)
+
+
+def _write_stl(products: Products, path: Path) -> None:
+    unit = products.options.unit
+    scaled = mesh.to_trimesh(products.mesh(), scale=UNITS[unit])
+    header = f"bladegen {products.blade.name}, unit: {unit}".encode("ascii", "replace")
+    body = scaled.export(file_type="stl")
+    path.write_bytes(header[:STL_HEADER].ljust(STL_HEADER) + body[STL_HEADER:])
+
+
+def _write_obj(products: Products, path: Path) -> None:
+    unit = products.options.unit
+    scaled = mesh.to_trimesh(products.mesh(), scale=UNITS[unit])
+    header = f"bladegen {' '.join(products.blade.name.split())}, unit: {unit}"
+    path.write_text(
+        scaled.export(file_type="obj", include_normals=False, header=header), encoding="utf-8"
+    )
+
+
+def _write_ply(products: Products, path: Path) -> None:
+    scaled = mesh.to_trimesh(products.mesh(), scale=UNITS[products.options.unit])
+    path.write_bytes(scaled.export(file_type="ply", vertex_normal=False))
+
+
+def _write_glb(products: Products, path: Path) -> None:
+    path.write_bytes(mesh.to_trimesh(products.mesh()).export(file_type="glb"))
+
+
+def _write_3mf(products: Products, path: Path) -> None:
+    scaled = mesh.to_trimesh(products.mesh(), scale=UNITS["mm"])
+    path.write_bytes(scaled.export(file_type="3mf"))
+
+
+def _write_vtp(products: Products, path: Path) -> None:
+    preview.write_vtp(products.mesh(), path, scale=UNITS[products.options.unit])
+
+
+def _write_png(products: Products, path: Path) -> None:
+    products.progress("rendering")
+    preview.picture(products.blade, path)
+
+
+FORMATS = {
+    ".step": Format("STEP AP242, one closed solid with named faces, mm", _write_step),
+    ".stp": Format("the same as .step", _write_step),
+    ".stl": Format("STL, binary triangles, m (or mm)", _write_stl),
+    ".glb": Format("glTF binary, triangles for the web, m", _write_glb),
+    ".ply": Format("PLY, binary triangles, m (or mm)", _write_ply),
+    ".obj": Format("Wavefront OBJ, triangles, m (or mm)", _write_obj),
+    ".3mf": Format("3MF, triangles for printing, mm", _write_3mf),
+    ".vtp": Format("VTK poly data, triangles for ParaView, m (or mm)", _write_vtp),
+    ".png": Format("picture of the blade", _write_png),
+}
+
+
+def format_of(path: Path) -> Format:
+    """Return the format that a path's suffix names.
+
+    Raises
+    ------
+    ExportError
+        If no format has that suffix.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise ExportError(f"{path}: suffix {path.suffix!r}, allowed are {', '.join(FORMATS)}")
+    return FORMATS[suffix]
+
+
+def export(blade: Blade, path: str | Path, **options: Any) -> Path:
+    """Write a blade to a file in the format of its suffix.
+
+    Parameters
+    ----------
+    blade : Blade
+        What to write.
+    path : str or Path
+        Where to; an existing file is replaced once the new one is whole.
+    **options
+        Fields of `Options`.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ExportError
+        If the suffix is unknown or the file cannot be written.
+    CadError
+        If the solid is not valid; `ToleranceError` if it misses its tolerance, with the file
+        kept beside the target as ``<name>.out-of-tolerance.step``.
+    """
+    path = Path(path)
+    products = Products(blade, Options(**options))
+    write(products, path)
+    return path
+
+
+def write(products: Products, path: Path) -> None:
+    """Write one file from products that may serve several."""
+    writer = format_of(path).write
+    aside = path
+    miss = None
+    if writer is _write_step:
+        solid, tolerance = products.solid(), products.options.tolerance
+        if products.options.sections is None and solid.deviation.maximum > tolerance:
+            aside = path.with_suffix(f".out-of-tolerance{path.suffix}")
+            miss = ToleranceError(
+                f"{path}: the solid is {solid.deviation.maximum * 1e3:.3f} mm off the blade at "
+                f"eta = {solid.deviation.eta:.4f}, allowed is {tolerance * 1e3:g} mm; kept as "
+                f"{aside.name}"
+            )
+    with replacing(aside) as temporary:
+        writer(products, temporary)
+    if miss is not None:
+        raise miss

@@ -1,0 +1,147 @@
+"""Closed triangle meshes from a structured grid of sections.
+
+A grid of sections (k, n, 3) becomes quads split along their shorter diagonal, a strip that
+closes a blunt trailing edge, and caps zipped between opposite landmarks at root and tip.  The
+mesh is watertight and its triangles face outward.  Lengths are those of the sections, metres.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from bladegen.arrays import Array, readonly
+from bladegen.blade import Blade
+from bladegen.errors import GeometryError
+
+__all__ = ["TriangleMesh", "from_blade", "surface", "to_trimesh"]
+
+Indices = npt.NDArray[np.int64]
+
+SECTIONS = 300  # 300 x 401 landmarks make 240,000 triangles
+SAME_POINT = 1e-9  # m; landmarks nearer than this are one vertex
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Triangles that share vertices.
+
+    Parameters
+    ----------
+    vertices : (v, 3) array
+        Points [m].
+    faces : (f, 3) array of int
+        Vertices of each triangle, counter-clockwise seen from outside.
+    """
+
+    vertices: Array
+    faces: Indices
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", readonly(self.vertices))
+        faces = np.array(self.faces, dtype=np.int64)
+        faces.flags.writeable = False
+        object.__setattr__(self, "faces", faces)
+
+    @property
+    def area(self) -> float:
+        """Surface area [m2]."""
+        return float(0.5 * np.linalg.norm(self._normals, axis=1).sum())
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume [m3], by the divergence theorem; positive if faces look outward."""
+        first = self.vertices[self.faces[:, 0]] - self.vertices[0]
+        return float(np.sum(first * self._normals) / 6.0)
+
+    @property
+    def _normals(self) -> Array:
+        a, b, c = (self.vertices[self.faces[:, i]] for i in range(3))
+        return np.cross(b - a, c - a)
+
+
+def from_blade(blade: Blade, *, stations: int = SECTIONS) -> TriangleMesh:
+    """Mesh a blade by `stations` sections where it bends."""
+    return surface(blade.sections(blade.stations(stations)))
+
+
+def surface(sections: Array) -> TriangleMesh:
+    """Mesh a grid of sections.
+
+    Parameters
+    ----------
+    sections : (k, n, 3) array
+        From root to tip, each from trailing edge over suction side, leading edge and pressure
+        side to trailing edge, n odd.  First and last landmark may differ (blunt) or agree
+        (sharp), at each section for itself.
+
+    Raises
+    ------
+    GeometryError
+        If there are fewer than 2 sections or an even number of landmarks.
+    """
+    k, n, _ = sections.shape
+    if k < 2 or n < 5 or n % 2 == 0:
+        raise GeometryError(
+            f"mesh: got {k} sections of {n} landmarks, allowed are at least 2 sections of an "
+            "odd number of at least 5 landmarks"
+        )
+    points = sections.reshape(-1, 3)
+    grid = np.arange(k * n).reshape(k, n)
+    around = np.concatenate([grid, grid[:, :1]], axis=1)  # the last column closes the edge
+    faces = np.concatenate(
+        [
+            _quads(points, around[:-1, :-1], around[1:, :-1], around[1:, 1:], around[:-1, 1:]),
+            _cap(points, grid[0]),
+            _cap(points, grid[-1])[:, ::-1],
+        ]
+    )
+    return TriangleMesh(*_welded(points, faces, grid))
+
+
+def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
+    """Return the mesh as a trimesh.Trimesh, its lengths times `scale`."""
+    import trimesh
+
+    return trimesh.Trimesh(
+        vertices=mesh.vertices * scale, faces=mesh.faces, process=False, validate=False
+    )
+
+
+def read(path: Path) -> Any:
+    """Read a mesh file of any format that trimesh knows, as one trimesh.Trimesh."""
+    import trimesh
+
+    return trimesh.load_mesh(path)
+
+
+def _quads(points: Array, a: Indices, b: Indices, c: Indices, d: Indices) -> Indices:
+    """Split quads a-b-c-d along their shorter diagonal."""
+    a, b, c, d = (corner.reshape(-1) for corner in (a, b, c, d))
+    ac = np.sum((points[a] - points[c]) ** 2, axis=1)
+    bd = np.sum((points[b] - points[d]) ** 2, axis=1)
+    by_ac = (ac <= bd)[:, None]
+    first = np.where(by_ac, np.stack([a, b, c], axis=1), np.stack([a, b, d], axis=1))
+    second = np.where(by_ac, np.stack([a, c, d], axis=1), np.stack([b, c, d], axis=1))
+    return np.concatenate([first, second])
+
+
+def _cap(points: Array, row: Indices) -> Indices:
+    """Zip opposite landmarks of one section; the triangles look to the root."""
+    middle = len(row) // 2
+    suction, pressure = row[: middle + 1], row[: middle - 1 : -1]
+    return _quads(points, pressure[:-1], suction[:-1], suction[1:], pressure[1:])
+
+
+def _welded(points: Array, faces: Indices, grid: Indices) -> tuple[Array, Indices]:
+    """Join the two ends of sharp sections, drop collapsed triangles and unused vertices."""
+    sharp = np.linalg.norm(points[grid[:, 0]] - points[grid[:, -1]], axis=1) <= SAME_POINT
+    target = np.arange(len(points))
+    target[grid[sharp, -1]] = grid[sharp, 0]
+    faces = target[faces]
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    used, faces = np.unique(faces, return_inverse=True)
+    return points[used], faces.reshape(-1, 3)

@@ -1,0 +1,228 @@
+"""A blade's surface as one tensor-product B-spline, fitted until it meets a tolerance.
+
+The surface wraps suction side -> leading edge -> pressure side: cubic and C2 along the chord
+in the landmark parameter u, and along the span in eta.  It interpolates the landmarks of its
+sections; sections are added where the surface strays from the blade in between.  The truth it
+is held against is the blade itself, at spans and landmarks that the net does not use.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladegen.arrays import Array, readonly
+from bladegen.blade import Blade
+
+__all__ = ["Deviation", "SurfaceNet", "fit", "fitted"]
+
+DEGREE = 3
+FIRST_SECTIONS = 120
+MAX_SECTIONS = 360  # keeps a STEP file of 401 landmarks below 15 MB
+REFINEMENTS = 8
+MAXIMUM_SHARE = 0.5  # of the tolerance may be spent between sections at most
+RMS_SHARE = 0.08  # and in the mean; the rest is left to what lies between landmarks
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """How far a surface lies from the blade, at points that it was not made from.
+
+    Lengths in metres; `eta` and `u` say where the largest is, `samples` how many were taken.
+    """
+
+    maximum: float
+    rms: float
+    percentile99: float
+    eta: float
+    u: float
+    samples: int
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceNet:
+    """A bicubic B-spline surface.
+
+    Parameters
+    ----------
+    poles : (a, b, 3) array
+        Control points [m], chordwise first.
+    u_knots, v_knots : (a + 4,), (b + 4,) arrays
+        Knots with multiplicities, in landmark parameter and span fraction.
+    u, v : (a,), (b,) arrays
+        The landmark parameters and spans that are interpolated.
+    """
+
+    poles: Array
+    u_knots: Array
+    v_knots: Array
+    u: Array
+    v: Array
+
+    def __post_init__(self) -> None:
+        for field in ("poles", "u_knots", "v_knots", "u", "v"):
+            object.__setattr__(self, field, readonly(getattr(self, field)))
+
+    def evaluate(self, u: Array, v: Array, nu: int = 0, nv: int = 0) -> Array:
+        """Return points, or mixed derivatives, on the grid of `v` and `u`, (kv, ku, 3)."""
+        across = _basis(self.u_knots, u, nu)
+        along = _basis(self.v_knots, v, nv)
+        return np.tensordot(along, np.tensordot(across, self.poles, axes=(1, 0)), axes=(1, 1))
+
+    def halves(self) -> tuple["SurfaceNet", "SurfaceNet"]:
+        """Cut the surface at the leading edge, u = 0.5, exactly, by knot insertion."""
+        from scipy.interpolate import BSpline
+
+        spline = BSpline(self.u_knots, self.poles, DEGREE)
+        present = int(np.count_nonzero(self.u_knots == 0.5))
+        spline = spline.insert_knot(0.5, DEGREE - present)
+        first = int(np.searchsorted(spline.t, 0.5))
+        clamp = np.full(DEGREE + 1, 0.5)
+        middle = self.u <= 0.5, self.u >= 0.5
+        return (
+            SurfaceNet(
+                spline.c[:first],
+                np.concatenate([spline.t[:first], clamp]),
+                self.v_knots,
+                self.u[middle[0]],
+                self.v,
+            ),
+            SurfaceNet(
+                spline.c[first - 1 : len(spline.t) - DEGREE - 1],
+                np.concatenate([clamp, spline.t[first + DEGREE :]]),
+                self.v_knots,
+                self.u[middle[1]],
+                self.v,
+            ),
+        )
+
+    def volume(self) -> float:
+        """Return the volume [m3] inside the surface, its flat ends and its trailing edge.
+
+        The divergence theorem with Gauss-Legendre quadrature on every cell: exact but for
+        rounding, as all parts are piecewise polynomial.
+        """
+        u, wu = _quadrature(self.u_knots)
+        v, wv = _quadrature(self.v_knots)
+        flux = np.cross(self.evaluate(u, v, nv=1), self.evaluate(u, v, nu=1))
+        total = float(wv @ np.sum(self.evaluate(u, v) * flux, axis=-1) @ wu)
+
+        suction, pressure = np.moveaxis(self.evaluate(_ENDS, v), 1, 0)
+        suction_v, pressure_v = np.moveaxis(self.evaluate(_ENDS, v, nv=1), 1, 0)
+        for w, weight in zip(*_quadrature(_ENDS), strict=True):
+            strip, along = (
+                (1.0 - w) * pressure + w * suction,
+                (1.0 - w) * pressure_v + w * suction_v,
+            )
+            across = np.cross(along, suction - pressure)
+            total += weight * float(wv @ np.sum(strip * across, axis=-1))
+
+        rows, slopes = self.evaluate(u, _ENDS), self.evaluate(u, _ENDS, nu=1)
+        corners = self.evaluate(_ENDS, _ENDS)
+        for row, slope, (first, _), sign in zip(rows, slopes, corners, (1, -1), strict=True):
+            doubled = wu @ np.cross(row - first, slope)
+            total += sign * float(first @ doubled) / 2.0
+        return total / 3.0
+
+    def offsets(self, points: Array, u: Array, v: Array) -> Array:
+        """Return the distances [m] from points (kv, ku, 3) to the surface, signed, (kv, ku).
+
+        Points are expected near the surface's (u, v): the distance is measured along the
+        surface normal there, which is exact to second order.
+        """
+        normal = np.cross(self.evaluate(u, v, nu=1), self.evaluate(u, v, nv=1))
+        normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+        offsets: Array = np.sum((points - self.evaluate(u, v)) * normal, axis=-1)
+        return offsets
+
+
+def fit(sections: Array, u: Array, v: Array) -> SurfaceNet:
+    """Interpolate sections (k, n, 3) at landmark parameters u (n,) and spans v (k,)."""
+    from scipy.interpolate import make_interp_spline
+
+    across = make_interp_spline(u, sections, DEGREE, axis=1)
+    along = make_interp_spline(v, np.moveaxis(across.c, 0, 1), DEGREE, axis=0)
+    return SurfaceNet(np.moveaxis(along.c, 0, 1), across.t, along.t, u, v)
+
+
+def fitted(
+    blade: Blade,
+    tolerance: float,
+    *,
+    sections: int | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[SurfaceNet, Deviation]:
+    """Fit a net to a blade, with sections added until it meets `tolerance`.
+
+    Parameters
+    ----------
+    blade : Blade
+        What to fit.
+    tolerance : float
+        Largest distance to the blade's sections [m].
+    sections : int, optional
+        Use exactly so many sections instead, wherever that leads.
+    progress : callable
+        Told what is being done.
+
+    Returns
+    -------
+    SurfaceNet, Deviation
+        The net, and how far it is from the blade.  A deviation above the tolerance means
+        that more sections would not help, or would be more than `MAX_SECTIONS`.
+    """
+    v = blade.stations(FIRST_SECTIONS if sections is None else sections)
+    for _ in range(REFINEMENTS):
+        progress(f"fitting {len(v)} sections")
+        net = fit(blade.sections(v), blade.u, v)
+        if sections is not None:
+            break
+        middles = 0.5 * (v[1:] + v[:-1])
+        offsets = net.offsets(blade.sections(middles), blade.u, middles)
+        worst = np.abs(offsets).max(axis=1)
+        rms = np.sqrt(np.mean(offsets**2, axis=1))
+        split = (worst > MAXIMUM_SHARE * tolerance) | (rms > RMS_SHARE * tolerance)
+        if not split.any() or len(v) + np.count_nonzero(split) > MAX_SECTIONS:
+            break
+        v = np.sort(np.concatenate([v, middles[split]]))
+    return net, deviation(net, blade)
+
+
+def deviation(net: SurfaceNet, blade: Blade) -> Deviation:
+    """Measure a net against its blade, midway between its landmarks and off its sections."""
+    starts, widths = net.v[:-1], np.diff(net.v)
+    v = np.sort(np.concatenate([starts + widths / 3.0, starts + 0.75 * widths]))
+    u = np.concatenate([[0.0], 0.5 * (net.u[1:] + net.u[:-1]), [1.0]])
+    offsets = np.abs(net.offsets(blade.sections(v, u), u, v))
+    worst = np.unravel_index(np.argmax(offsets), offsets.shape)
+    return Deviation(
+        maximum=float(offsets.max()),
+        rms=float(np.sqrt(np.mean(offsets**2))),
+        percentile99=float(np.percentile(offsets, 99)),
+        eta=float(v[worst[0]]),
+        u=float(u[worst[1]]),
+        samples=offsets.size,
+    )
+
+
+_ENDS = np.array([0.0, 1.0])
+
+
+def _quadrature(knots: Array) -> tuple[Array, Array]:
+    """Return nodes and weights that integrate the products of a bicubic surface exactly."""
+    nodes, weights = np.polynomial.legendre.leggauss(5)
+    distinct = np.unique(knots)
+    half = 0.5 * np.diff(distinct)[:, None]
+    return (
+        (distinct[:-1, None] + half + half * nodes).reshape(-1),
+        (half * weights).reshape(-1),
+    )
+
+
+def _basis(knots: Array, x: Array, derivative: int) -> Array:
+    """Return B-spline basis values or derivatives at x, (k, poles), as a matrix."""
+    from scipy.interpolate import BSpline
+
+    identity = np.eye(len(knots) - DEGREE - 1)
+    values: Array = BSpline(knots, identity, DEGREE)(x, nu=derivative)
+    return values

@@ -1,0 +1,213 @@
+"""Measures of sections on their splines: leading edge, unit chord, relative thickness.
+
+Sections are landmarks of shape (k, n, 2) at common parameters u (n,), trailing edge ->
+suction side -> leading edge -> pressure side.  Their splines are C2 cubics in u.
+
+The leading edge is the point farthest from the trailing-edge midpoint, the chord is that
+distance, and the relative thickness is the largest distance between the two sides measured
+normal to the chord line, over the chord.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladegen.arrays import Array
+
+__all__ = ["SectionCurves", "SectionSplines"]
+
+PARAMETER_TOLERANCE = 1e-12  # of u; a maximum is off by its square
+ITERATIONS = 60  # bisection alone needs 40
+WINDOW = 10  # landmarks either side of a guess in which the thickest place is sought
+
+
+@dataclass(frozen=True, eq=False)
+class SectionSplines:
+    """Fits splines to any number of sections with the same landmark parameters.
+
+    Parameters
+    ----------
+    u : (n,) array
+        Landmark parameters, 0.5 at the leading-edge landmark, symmetric about it.
+
+    Notes
+    -----
+    A spline's slopes are linear in its points, so a fit is one matrix product.
+    """
+
+    u: Array
+
+    @cached_property
+    def _slopes(self) -> Array:
+        """The (n, n) matrix from points to the slopes of their not-a-knot cubic spline."""
+        from scipy.interpolate import CubicSpline
+
+        slopes: Array = CubicSpline(self.u, np.eye(len(self.u)))(self.u, 1)
+        return slopes
+
+    def values(self, u: Array, derivative: int = 0) -> Array:
+        """Return the (m, n) matrix from landmarks to points, or derivatives, at `u`."""
+        from scipy.interpolate import CubicSpline
+
+        matrix: Array = CubicSpline(self.u, np.eye(len(self.u)))(u, derivative)
+        return matrix
+
+    def fit(self, points: Array) -> "SectionCurves":
+        """Return the splines through landmarks (k, n, 2)."""
+        return SectionCurves(self.u, points, self._slopes @ points)
+
+    def normalising(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array]:
+        """Return the maps that bring sections to unit chord and relative thickness, exactly.
+
+        Both are maps of GL2 that move no point of the Grassmannian: a scaling, and a
+        stretch normal to the chord line, which keeps leading edge and trailing-edge midpoint.
+
+        Parameters
+        ----------
+        points : (k, n, 2) array
+            Sections in airfoil axes, close to unit chord.
+        relative_thickness : (k,) array, optional
+            The thickness over chord to reach, not many times its own; None leaves it.
+
+        Returns
+        -------
+        A, c : (k, 2, 2), (k, 2) arrays
+            ``points @ A + c`` has unit chord and the thickness.
+        """
+        curves = self.fit(points)
+        scale = 1.0 / curves.chord
+        A = scale[:, None, None] * np.eye(2)
+        if relative_thickness is None:
+            return A, np.zeros_like(curves.leading_edge)
+        stretch = (relative_thickness / curves.relative_thickness - 1.0) * scale
+        along = (curves.trailing_edge - curves.leading_edge) * scale[:, None]
+        normal = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+        lift = stretch[:, None, None] * normal[:, :, None] * normal[:, None, :]
+        return A + lift, -(curves.leading_edge[:, None] @ lift)[:, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class SectionCurves:
+    """Sections as splines: landmarks and slopes (k, n, 2) at the parameters u (n,)."""
+
+    u: Array
+    points: Array
+    slopes: Array
+
+    def at(self, u: Array) -> tuple[Array, Array, Array]:
+        """Return points and first and second derivatives at `u` (k, ...), each (k, ..., 2)."""
+        i = np.clip(np.searchsorted(self.u, u, side="right") - 1, 0, len(self.u) - 2)
+        row = np.arange(len(self.points)).reshape((-1,) + (1,) * (u.ndim - 1))
+        start, slope = self.points[row, i], self.slopes[row, i]
+        width, h = (self.u[i + 1] - self.u[i])[..., None], (u - self.u[i])[..., None]
+        secant = (self.points[row, i + 1] - start) / width
+        bend = self.slopes[row, i + 1] + slope - 2.0 * secant
+        a = bend / width**2
+        b = (secant - slope - bend) / width
+        return (
+            ((a * h + b) * h + slope) * h + start,
+            (3 * a * h + 2 * b) * h + slope,
+            6 * a * h + 2 * b,
+        )
+
+    @cached_property
+    def trailing_edge(self) -> Array:
+        """The trailing-edge midpoints, (k, 2)."""
+        return 0.5 * (self.points[:, 0] + self.points[:, -1])
+
+    @cached_property
+    def leading_edge(self) -> Array:
+        """The leading edges, (k, 2)."""
+        away = self.points - self.trailing_edge[:, None]
+        far = np.argmax(np.sum(away * away, axis=-1), axis=1)
+        far = np.clip(far, 1, len(self.u) - 2)
+
+        def receding(u: Array) -> tuple[Array, Array]:
+            p, d1, d2 = self.at(u)
+            r = p - self.trailing_edge
+            return np.sum(r * d1, axis=-1), np.sum(d1 * d1 + r * d2, axis=-1)
+
+        return self.at(_root(receding, self.u[far - 1], self.u[far], self.u[far + 1]))[0]
+
+    @cached_property
+    def chord(self) -> Array:
+        """The chords, (k,)."""
+        length: Array = np.linalg.norm(self.trailing_edge - self.leading_edge, axis=-1)
+        return length
+
+    @cached_property
+    def relative_thickness(self) -> Array:
+        """Largest distance between the sides normal to the chord line, over the chord, (k,)."""
+        return self._along_chord._thickness / self.chord
+
+    @property
+    def _along_chord(self) -> "SectionCurves":
+        """The sections turned so that x runs along the chord line."""
+        along = (self.trailing_edge - self.leading_edge) / self.chord[:, None]
+        axes = np.stack([along, np.stack([-along[:, 1], along[:, 0]], axis=-1)], axis=-1)
+        return SectionCurves(self.u, self.points @ axes, self.slopes @ axes)
+
+    @property
+    def _thickness(self) -> Array:
+        """Largest height between the sides at one x, (k,)."""
+        middle = len(self.u) // 2
+        reach = min(WINDOW, (middle - 3) // 2)
+        paired = self.points[:, :middle, 1] - self.points[:, :middle:-1, 1]
+        best = np.argmax(paired, axis=1)
+        for _ in range(middle):
+            best = np.clip(best, reach + 1, middle - reach - 2)
+            window = best[:, None] + np.arange(-reach, reach + 1)
+            heights = self._gap(self.u[window])[0]
+            found = window[np.arange(len(best)), np.argmax(heights, axis=1)]
+            moved = np.abs(found - best) == reach
+            best = found
+            if not moved.any():
+                break
+
+        def rising(u: Array) -> tuple[Array, Array]:
+            return self._gap(u)[1:]
+
+        u = _root(rising, self.u[best - 1], self.u[best], self.u[best + 1])
+        return self._gap(u)[0]
+
+    def _gap(self, u: Array) -> tuple[Array, Array, Array]:
+        """Return the height between the sides at suction parameters `u`, and two derivatives."""
+        p, p1, p2 = self.at(u)
+        w = 1.0 - u
+        for _ in range(8):  # Newton for the pressure-side point at the same x
+            q, q1, q2 = self.at(w)
+            step = (q[..., 0] - p[..., 0]) / q1[..., 0]
+            if np.all(np.abs(step) <= PARAMETER_TOLERANCE):
+                break
+            w = np.clip(w - step, 0.5, 1.0)
+        rate = p1[..., 0] / q1[..., 0]  # dw / du at equal x
+        bend = (p2[..., 0] - q2[..., 0] * rate**2) / q1[..., 0]
+        return (
+            p[..., 1] - q[..., 1],
+            p1[..., 1] - q1[..., 1] * rate,
+            p2[..., 1] - q2[..., 1] * rate**2 - q1[..., 1] * bend,
+        )
+
+
+def _root(
+    f: Callable[[Array], tuple[Array, Array]], low: Array, start: Array, high: Array
+) -> Array:
+    """Find where f falls through zero between `low` and `high`: Newton, kept by bisection.
+
+    `f` returns the value and its derivative; positive at `low`, negative at `high`.
+    """
+    u, low, high = start.copy(), low.copy(), high.copy()
+    for _ in range(ITERATIONS):
+        value, slope = f(u)
+        low, high = np.where(value > 0, u, low), np.where(value > 0, high, u)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            newton = u - value / slope
+        inside = (newton >= low) & (newton <= high)
+        following = np.where(inside, newton, 0.5 * (low + high))
+        settled = np.all(np.abs(following - u) <= PARAMETER_TOLERANCE)
+        u = following
+        if settled:
+            break
+    return u

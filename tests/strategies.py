@@ -1,0 +1,95 @@
+"""Hypothesis strategies: points and tangents of Gr(n, 2), rotations, airfoils."""
+
+import numpy as np
+from hypothesis import strategies as st
+
+from bladegen import grassmann
+from bladegen.arrays import Array, readonly
+
+SEEDS = st.integers(0, 2**32 - 1)
+SIZES = st.integers(5, 40)
+MODERATE = 1.2  # rad; principal angles stay below 90 degrees
+
+
+def random_points(rng: np.random.Generator, count: int, n: int) -> Array:
+    """Points in general position."""
+    return np.linalg.qr(rng.normal(size=(count, n, 2))).Q
+
+
+def random_tangent(rng: np.random.Generator, X: Array, size: float) -> Array:
+    """A tangent vector at X with a largest principal angle of `size`."""
+    V = rng.normal(size=X.shape)
+    D = V - X @ (X.mT @ V)
+    return size * D / np.linalg.norm(D, ord=2, axis=(-2, -1), keepdims=True)
+
+
+@st.composite
+def points(draw: st.DrawFn, count: int = 1) -> Array:
+    """(count, n, 2) points within 1.2 rad of the first, read-only."""
+    rng = np.random.default_rng([1, draw(SEEDS)])  # never the stream of a test's own seed
+    first = random_points(rng, 1, draw(SIZES))
+    size = draw(st.floats(0.0, MODERATE))
+    others = [grassmann.exp(first, random_tangent(rng, first, size)) for _ in range(count - 1)]
+    turns = np.linalg.qr(rng.normal(size=(count, 2, 2))).Q
+    return readonly(np.concatenate([first, *others]) @ turns)
+
+
+@st.composite
+def tangents(draw: st.DrawFn, X: Array, *, size: float = 1.0) -> Array:
+    """A tangent vector at X, read-only."""
+    return readonly(random_tangent(np.random.default_rng(draw(SEEDS)), X, size))
+
+
+@st.composite
+def rotations(draw: st.DrawFn, *, proper: bool = False) -> Array:
+    """An orthogonal 2 x 2 matrix; a rotation if `proper`."""
+    angle = draw(st.floats(-np.pi, np.pi))
+    c, s = np.cos(angle), np.sin(angle)
+    mirror = 1.0 if proper else draw(st.sampled_from([1.0, -1.0]))
+    return readonly(np.array([[c, -s], [s, c]]) @ np.diag([1.0, mirror]))
+
+
+@st.composite
+def maps(draw: st.DrawFn) -> Array:
+    """A linear map with positive determinant, not too thin."""
+    angle, turn = draw(st.floats(-3.0, 3.0)), draw(st.floats(-3.0, 3.0))
+    a, b = draw(st.floats(0.1, 10.0)), draw(st.floats(0.1, 10.0))
+    first = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    second = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    return readonly(first @ np.diag([a, b]) @ second)
+
+
+def four_digit(x: Array, thickness: float, camber: float) -> tuple[Array, Array]:
+    """Half thickness and camber of a NACA four-digit section with a closed edge.
+
+    Abbott & von Doenhoff, Theory of Wing Sections, sections 6.4 and 6.5; the last
+    coefficient is the usual one for a closed trailing edge.
+    """
+    half = 5 * thickness * np.polyval([-0.1036, 0.2843, -0.3516, -0.1260, 0.0], x)
+    half += 5 * thickness * 0.2969 * np.sqrt(x)
+    return half, 4 * camber * x * (1 - x)
+
+
+@st.composite
+def airfoils(draw: st.DrawFn) -> Array:
+    """(m, 2) airfoil coordinates: any density, order and trailing edge, read-only."""
+    m = draw(st.integers(30, 150))
+    thickness, camber = draw(st.floats(0.08, 0.5)), draw(st.floats(0.0, 0.06))
+    gap = draw(st.sampled_from([0.0, 0.003, 0.03]))
+    x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, m)))
+    half, middle = four_digit(x, thickness, camber)
+    half = half + 0.5 * gap * x
+    upper, lower = np.stack([x, middle + half], 1), np.stack([x, middle - half], 1)
+    xy = np.concatenate([upper[::-1], lower[1:]])
+    return readonly(xy[::-1] if draw(st.booleans()) else xy)
+
+
+def circle(count: int = 101) -> Array:
+    """(count, 2) points on the circle of unit chord, closed."""
+    angle = np.linspace(0.0, 2 * np.pi, count)
+    return np.stack([0.5 + 0.5 * np.cos(angle), 0.5 * np.sin(angle)], axis=1)
+
+
+def ellipse(thickness: float, count: int = 201) -> Array:
+    """(count, 2) points on an ellipse of unit chord, closed."""
+    return circle(count) * [1.0, thickness]

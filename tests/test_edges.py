@@ -1,0 +1,63 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.landmarks import landmark_parameters, landmarks
+from bladegen.sections import SectionSplines
+from strategies import airfoils, circle
+
+U = landmark_parameters(401)
+
+
+@given(airfoils(), st.floats(0.3, 6.0), st.floats(0.0, 0.01))
+def test_a_minimum_thickness_is_kept_and_nothing_else_changes(xy, chord, minimum):
+    profile = landmarks(xy, 401)[None]
+    finished = MinimumThickness(minimum)(profile, np.array([chord]))
+    gap = profile[0, 0, 1] - profile[0, -1, 1]
+    new_gap = finished[0, 0, 1] - finished[0, -1, 1]
+    assert_allclose(new_gap * chord, max(gap * chord, minimum), atol=1e-12)
+    before, after = (SectionSplines(U).fit(p) for p in (profile, finished))
+    assert_allclose(after.chord, before.chord, atol=1e-6)
+    front = profile[0, :, 0] < 0.5
+    assert_allclose(finished[0, front], profile[0, front], atol=0)
+    if gap * chord >= minimum:
+        assert_allclose(finished, profile, atol=1e-15)
+
+
+def test_a_circle_stays_a_circle_to_a_micrometre():
+    profile, chord = landmarks(circle(721), 401)[None], np.array([5.2])
+    finished = MinimumThickness(0.002)(profile, chord)
+    radius = np.linalg.norm(finished[0] - [0.5, 0.0], axis=1) * chord
+    assert_allclose(radius, 2.6, atol=1e-6)
+
+
+@given(airfoils())
+def test_sides_do_not_cross_behind_an_opened_edge(xy):
+    profile = landmarks(xy, 401)[None]
+    finished = MinimumThickness(0.01)(profile, np.array([1.0]))[0]
+    half = 0.5 * (finished[:80, 1] - finished[:-81:-1, 1])
+    assert np.all(half >= 0.005 - 1e-12)
+
+
+@given(airfoils())
+def test_sharp_edges_are_closed_and_meet_only_there(xy):
+    profile = landmarks(xy, 401)[None]
+    finished = Sharp()(profile, np.array([1.0]))[0]
+    assert_allclose(finished[0], [1.0, 0.5 * (profile[0, 0, 1] + profile[0, -1, 1])], atol=1e-12)
+    assert_allclose(finished[0], finished[-1], atol=1e-15)
+
+
+def test_as_given_changes_nothing():
+    profile = landmarks(circle(), 401)[None]
+    assert AsGiven()(profile, np.array([1.0])) is profile
+
+
+@pytest.mark.parametrize("edge", [MinimumThickness(0.02), Sharp(), AsGiven()])
+def test_inputs_are_left_untouched(edge):
+    profile = landmarks(circle(), 401)[None]
+    kept = profile.copy()
+    edge(profile, np.array([1.0]))
+    assert_allclose(profile, kept, atol=0)

@@ -1,0 +1,117 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from bladegen import landmarks as lm
+from bladegen.errors import GeometryError
+from strategies import airfoils, circle, ellipse
+
+COUNTS = st.sampled_from([51, 101, 401])
+
+
+def distances_to_polyline(points, line):
+    """Distance of each point to a polyline."""
+    start, step = line[:-1], np.diff(line, axis=0)
+    t = np.sum((points[:, None] - start) * step, axis=-1) / np.sum(step * step, axis=-1)
+    foot = start + np.clip(t, 0, 1)[..., None] * step
+    return np.min(np.linalg.norm(points[:, None] - foot, axis=-1), axis=1)
+
+
+@given(airfoils(), COUNTS)
+def test_landmarks_run_from_edge_to_edge_suction_side_first(xy, n):
+    points = lm.landmarks(xy, n)
+    assert points.shape == (n, 2)
+    x, y = points.T
+    area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
+    assert area > 0
+    ends = xy[[0, -1]] if xy[1, 1] > xy[-2, 1] else xy[[-1, 0]]
+    assert_allclose(points[[0, -1]], ends, atol=1e-12)
+
+
+@given(airfoils(), COUNTS)
+def test_the_order_of_the_points_does_not_matter(xy, n):
+    assert_allclose(lm.landmarks(xy[::-1], n), lm.landmarks(xy, n), atol=1e-12)
+
+
+@given(airfoils())
+def test_repeated_points_do_not_matter(xy):
+    doubled = np.repeat(xy, 2, axis=0)
+    assert_allclose(lm.landmarks(doubled, 51), lm.landmarks(xy, 51), atol=1e-13)
+
+
+@given(airfoils(), COUNTS)
+def test_the_middle_landmark_is_the_farthest_from_the_trailing_edge(xy, n):
+    points = lm.landmarks(xy, n)
+    middle = 0.5 * (points[0] + points[-1])
+    fine = lm.landmarks(xy, 4001, spacing=lm.cosine)
+    farthest = np.linalg.norm(fine - middle, axis=1).max()
+    assert_allclose(np.linalg.norm(points[n // 2] - middle), farthest, atol=1e-7)
+
+
+@given(airfoils())
+def test_landmarks_lie_on_the_airfoil(xy):
+    assert distances_to_polyline(lm.landmarks(xy, 101), np.asarray(xy)).max() < 5e-3
+
+
+@given(airfoils(), st.sampled_from([lm.uniform, lm.cosine, lm.clustered]))
+def test_each_side_is_divided_alike_by_arc_length(xy, spacing):
+    n = 1601
+    points = lm.landmarks(xy, n, spacing=spacing)
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    nose = arc[n // 2]
+    sides = arc[: n // 2 + 1] / nose, (arc[-1] - arc[n // 2 :][::-1]) / (arc[-1] - nose)
+    wanted = 2.0 * lm.landmark_parameters(n, spacing)[: n // 2 + 1]
+    for side in sides:
+        assert_allclose(side, wanted, atol=2e-4)  # chords are shorter than arcs at the nose
+
+
+@given(COUNTS)
+def test_finer_landmarks_hold_the_coarser(n):
+    xy = ellipse(0.3)
+    assert_allclose(lm.landmarks(xy, 2 * n - 1)[::2], lm.landmarks(xy, n), atol=1e-12)
+
+
+def test_a_circle_is_a_circle():
+    points = lm.landmarks(circle(), 401)
+    assert_allclose(np.linalg.norm(points - [0.5, 0.0], axis=1), 0.5, atol=1e-6)
+    assert_allclose(points[200], [0.0, 0.0], atol=1e-6)
+
+
+def test_a_blunt_base_closed_to_a_point_is_opened():
+    open_edge = ellipse(0.3, 401)[20:-20]
+    edge = np.array([[open_edge[0, 0] + 5e-4, 0.0]])
+    height = open_edge[0, 1] - open_edge[-1, 1]
+    assert 0.01 < height < 0.1
+    closed = np.concatenate([edge, open_edge, edge])
+    scaled = closed / closed[0, 0] * [1.0, 0.2]
+    curve = lm.contour(scaled)
+    assert_allclose(curve.opened, 0.2 * height / closed[0, 0], rtol=0.1)
+    points = lm.landmarks(scaled, 101)
+    assert_allclose(points[[0, -1], 0], 1.0, atol=1e-12)
+    assert points[0, 1] - points[-1, 1] == pytest.approx(curve.opened, rel=1e-6)
+
+
+@given(st.sampled_from([lm.uniform, lm.cosine, lm.clustered]), st.integers(2, 200))
+def test_landmark_parameters_are_symmetric_and_increase(spacing, half):
+    u = lm.landmark_parameters(2 * half + 1, spacing)
+    assert_allclose(u + u[::-1], 1.0, atol=1e-15)
+    assert_allclose(u[[0, half, -1]], [0.0, 0.5, 1.0], atol=1e-15)
+    assert np.all(np.diff(u) > 0)
+
+
+@pytest.mark.parametrize("n", [3, 100, 0, -5])
+def test_an_even_or_small_number_of_landmarks_is_refused(n):
+    with pytest.raises(GeometryError, match=f"n = {n}, allowed are odd numbers from 5"):
+        lm.landmark_parameters(n)
+
+
+def test_unusable_airfoils_are_refused():
+    with pytest.raises(GeometryError, match="distinct points"):
+        lm.landmarks(np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 0.0]]), 11)
+    with pytest.raises(GeometryError, match="area"):
+        lm.landmarks(np.array([[1.0, 0.0], [0.5, 0.0], [0.0, 0.0]]), 11)
+    gaping = np.array([[1.0, 2.0], [0.8, 1.0], [0.5, 0.0], [0.8, -1.0], [1.0, -2.0]])
+    with pytest.raises(GeometryError, match="no leading edge"):
+        lm.landmarks(gaping, 11)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         Station,
     )
     from bladegen.errors import BladegenError, Finding
-    from bladegen.export import export
+    from bladegen.exporters import export
     from bladegen.readers import bundled, read
 
 __version__ = "0.1.0"
@@ -39,7 +39,7 @@ _HOME = {
     "Rotor": "definition",
     "Station": "definition",
     "bundled": "readers",
-    "export": "export",
+    "export": "exporters",
     "read": "readers",
 }
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from bladegen import affine
 from bladegen.arrays import Array, ArrayLike, readonly
+from bladegen.crowding import Crowding
 from bladegen.definition import BladeDefinition
 from bladegen.edges import MinimumThickness, TrailingEdge
 from bladegen.errors import DefinitionError, Finding
@@ -25,6 +26,7 @@ from bladegen.interpolation import (
 )
 from bladegen.landmarks import Contour, Spacing, clustered, contour, landmark_parameters
 from bladegen.planform import Planform, SectionPlanes, normal_to_axis
+from bladegen.remarks import disagreeing, opened
 from bladegen.sections import SectionSplines
 
 __all__ = ["PATHS", "Blade"]
@@ -32,7 +34,6 @@ __all__ = ["PATHS", "Blade"]
 PATHS: dict[str, PathMaker] = {"geodesic": geodesic_path, "spline": spline_path}
 RESOLVING_SPANS = 1001  # spans at which bends are looked for
 RESOLVING_LANDMARKS = 40  # landmarks that are watched for bends, about
-EVEN_SHARE = 0.35  # of the stations: spread evenly, so that no part of the span is left bare
 MINIMUM_EDGE = MinimumThickness()
 SAME_SHAPE = 1e-10  # of the largest singular value; stations may repeat an airfoil
 
@@ -134,7 +135,9 @@ class Blade:
             planes=planes,
             trailing_edge=trailing_edge,
             contours=contours,
-            findings=definition.findings + _opened(definition, contours),
+            findings=definition.findings
+            + opened(definition, contours)
+            + disagreeing(definition, u, affine.restore(X, M, b)),
         )
 
     @property
@@ -281,39 +284,13 @@ class Blade:
                 f"stations: got {count}, at least {len(fixed)} are needed: root, tip and the "
                 "definition's own"
             )
-        grid, crowding = self._crowding
-        marks = np.interp(fixed, grid, crowding)
-        share = np.diff(marks) / (marks[-1] - marks[0]) * (count - len(fixed))
-        inner = np.floor(share).astype(int)
-        rest = count - len(fixed) - int(inner.sum())
-        inner[np.argsort(inner - share, kind="stable")[:rest]] += 1
-        cells = np.repeat(np.arange(len(inner)), inner + 1)
-        within = np.arange(len(cells)) - np.concatenate([[0], np.cumsum(inner + 1)[:-1]])[cells]
-        level = marks[cells] + np.diff(marks)[cells] * within / (inner + 1)[cells]
-        spans = np.interp(level, crowding, grid)
-        spans[within == 0] = fixed[:-1]
-        return np.append(spans, 1.0)
+        return self._crowding.spans(fixed, count)
 
     @cached_property
-    def _crowding(self) -> tuple[Array, Array]:
-        """Span fractions and the cumulative density of stations there, strictly increasing.
-
-        The density is the square root of the surface's second difference along the span: it
-        spreads the error of a piecewise linear or cubic surface evenly.
-        """
+    def _crowding(self) -> Crowding:
         grid = np.linspace(0.0, 1.0, RESOLVING_SPANS)
         some = slice(None, None, max(1, len(self.u) // RESOLVING_LANDMARKS))
-        points = self.sections(grid)[:, some]
-        bend = np.abs(np.diff(points, 2, axis=0)).max(axis=(1, 2))
-        density = np.sqrt(np.concatenate([bend[:1], bend, bend[-1:]]))
-        density = np.convolve(np.pad(density, 2, mode="edge"), np.full(5, 0.2), mode="valid")
-        total = density.sum()
-        if total > 0:
-            density = (1.0 - EVEN_SHARE) * density / total + EVEN_SHARE / len(grid)
-        else:
-            density = np.full(len(grid), 1.0 / len(grid))
-        steps = 0.5 * (density[1:] + density[:-1])
-        return grid, np.concatenate([[0.0], np.cumsum(steps)])
+        return Crowding.of(grid, self.sections(grid)[:, some])
 
 
 def _spans(eta: ArrayLike) -> Array:
@@ -323,20 +300,3 @@ def _spans(eta: ArrayLike) -> Array:
         bad = spans[~((spans >= 0) & (spans <= 1))][0]
         raise DefinitionError(f"eta: got {bad:g}, allowed is 0 (root) to 1 (tip)")
     return spans
-
-
-def _opened(definition: BladeDefinition, contours: tuple[Contour, ...]) -> tuple[Finding, ...]:
-    """Say which airfoils had a blunt base that was closed to one point."""
-    heights = {
-        station.airfoil.name: contour.opened
-        for station, contour in zip(definition.stations, contours, strict=True)
-    }
-    return tuple(
-        Finding(
-            f"airfoil {name}",
-            f"a blunt base of {height:.4f} chord is closed to one point; taken as an open "
-            "trailing edge",
-        )
-        for name, height in heights.items()
-        if height
-    )

@@ -30,6 +30,7 @@ __all__ = [
 
 MIN_AIRFOIL_POINTS = 3
 THICKNESS_RIPPLE = 1e-4  # published curves ripple by 1e-5 about the thinnest airfoil (DTU 10 MW)
+AT_END = 1e-6  # of the span: a curve that ends level meets its end value as much too early
 MAX_AIRFOIL_POINTS = 5_000  # far above any published airfoil (399); bounds time and memory
 
 
@@ -309,13 +310,17 @@ def stations_by_thickness(
     ordered = sorted(airfoils, key=lambda pair: -pair[0])
     stations = []
     for thickness, airfoil in ordered:
-        first = int(np.argmax(falling <= thickness + THICKNESS_RIPPLE))
-        if falling[first] > thickness + THICKNESS_RIPPLE or falling[0] < thickness:
+        level = float(np.clip(thickness, falling[-1], falling[0]))
+        if abs(level - thickness) > THICKNESS_RIPPLE:
             raise DefinitionError(
                 f"airfoil {airfoil.name!r}: relative thickness {thickness:g} is not met by the "
                 f"distribution, which runs from {falling[0]:g} to {falling[-1]:g}"
             )
-        stations.append(Station(_crossing(relative_thickness, grid, first, thickness), airfoil))
+        first = int(np.argmax(falling <= level))
+        eta = _crossing(relative_thickness, grid, first, level)
+        if min(eta, 1.0 - eta) < AT_END:
+            eta = float(round(eta))
+        stations.append(Station(eta, airfoil))
     if stations[0].eta > 0:
         stations.insert(0, Station(0.0, stations[0].airfoil))
     if stations[-1].eta < 1:

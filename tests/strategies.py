@@ -1,10 +1,11 @@
-"""Hypothesis strategies: points and tangents of Gr(n, 2), rotations, airfoils."""
+"""Hypothesis strategies: points and tangents of Gr(n, 2), rotations, airfoils, definitions."""
 
 import numpy as np
 from hypothesis import strategies as st
 
 from bladegen import grassmann
 from bladegen.arrays import Array, readonly
+from bladegen.definition import Airfoil, BladeDefinition, Distribution, ReferenceAxis, Station
 
 SEEDS = st.integers(0, 2**32 - 1)
 SIZES = st.integers(5, 40)
@@ -93,3 +94,49 @@ def circle(count: int = 101) -> Array:
 def ellipse(thickness: float, count: int = 201) -> Array:
     """(count, 2) points on an ellipse of unit chord, closed."""
     return circle(count) * [1.0, thickness]
+
+
+def naca(thickness: float, camber: float, gap: float, m: int = 81) -> Array:
+    """(2 m - 1, 2) four-digit airfoil with an open edge, suction side first."""
+    x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, m)))
+    half, middle = four_digit(x, thickness, camber)
+    half = half + 0.5 * gap * x
+    upper, lower = np.stack([x, middle + half], 1), np.stack([x, middle - half], 1)
+    return np.concatenate([upper[::-1], lower[1:]])
+
+
+@st.composite
+def definitions(draw: st.DrawFn, *, thickness: bool | None = None) -> BladeDefinition:
+    """A small blade: a circle, its repetition, and two or three airfoils; own grids."""
+    round_ = Airfoil("circle", circle())
+    others = [
+        Airfoil(f"foil{i}", naca(t, draw(st.floats(0.0, 0.05)), draw(st.sampled_from([0.0, 0.01]))))
+        for i, t in enumerate((0.4, 0.25, 0.18)[: draw(st.integers(2, 3))])
+    ]
+    first = draw(st.floats(0.02, 0.1))
+    places = np.linspace(0.25, 1.0, len(others))
+    stations = [Station(0.0, round_), Station(first, round_)]
+    stations += [Station(float(eta), foil) for eta, foil in zip(places, others, strict=True)]
+    length, root = draw(st.floats(20.0, 120.0)), draw(st.floats(1.0, 5.0))
+
+    def over(*values: float) -> Distribution:
+        return Distribution(np.linspace(0.0, 1.0, len(values)), np.array(values))
+
+    bend, sweep = draw(st.floats(-0.05, 0.05)), draw(st.floats(-0.05, 0.05))
+    axis = ReferenceAxis(
+        over(0.0, 0.2 * bend * length, bend * length),
+        over(0.0, 0.1 * sweep * length, sweep * length),
+        over(0.0, 0.4 * length, length),
+    )
+    with_thickness = draw(st.booleans()) if thickness is None else thickness
+    ratios = np.array([1.0, 1.0, *(0.4, 0.25, 0.18)[: len(others)]])
+    distribution = Distribution(np.array([s.eta for s in stations]), ratios)
+    return BladeDefinition(
+        name="drawn",
+        stations=tuple(stations),
+        chord=over(root, 1.2 * root, 0.9 * root, 0.5 * root, 0.2 * root),
+        twist=over(draw(st.floats(-0.1, 0.3)), 0.1, draw(st.floats(-0.1, 0.1))),
+        axis=axis,
+        pitch_axis=over(0.5, 0.35, 0.3),
+        relative_thickness=distribution if with_thickness else None,
+    )

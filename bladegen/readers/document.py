@@ -1,85 +1,52 @@
-"""Documents at the edge: safe YAML, and a cursor that collects what is wrong with them.
+"""A cursor over a parsed document that knows its place and collects what is wrong.
 
-A `Node` is a value with its path inside the file.  Asking it for something it does not hold
-notes a problem with path, value and what is allowed, and goes on, so that one reading reports
-all problems of a file at once.
+A `Node` is a value with its path inside the file.  Asking it for something that it does not
+hold notes a problem with path, value and what is allowed, and goes on with None, so that one
+reading reports all problems of a file at once.
 """
 
 import math
-import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
-import yaml
 
-from bladegen.arrays import Array
+from bladegen.arrays import Array, ArrayLike, Mask
 from bladegen.definition import Distribution
-from bladegen.errors import FileError, Finding
+from bladegen.errors import Finding
 
-__all__ = ["Node", "Notes", "load_yaml"]
+__all__ = ["FRACTION", "Node", "Notes", "Range"]
 
-MAX_BYTES = 64_000_000
-GRID_ROUNDING = 1e-6  # a grid may run over [0, 1] by so much; it is cut, and said
+GRID_ROUNDING = 1e-6  # a grid may leave [0, 1] by so much; it is cut, and said
+MAX_ENTRIES = 100_000  # far above any published table (399 rows); bounds time and memory
+SHOWN_ENTRIES = 5  # wrong entries of one list that are named one by one
+SHOWN_PROBLEMS = 100  # problems of one file that are named one by one
+SHOWN_CHARACTERS = 40
 _ABSENT = object()
 
 
-class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
-    """Safe YAML with the numbers of YAML 1.2: `5e-05` is a number, not text."""
+@dataclass(frozen=True)
+class Range:
+    """The numbers that a place may hold: `low` to `high`, without `low` where `above`."""
 
-    def flatten_mapping(self, node: yaml.MappingNode) -> None:
-        for key, _ in node.value:
-            if key.tag == "tag:yaml.org,2002:merge":
-                raise yaml.constructor.ConstructorError(
-                    None, None, "merge keys (<<) are not supported", key.start_mark
-                )
+    low: float
+    high: float
+    unit: str = ""
+    above: bool = False
 
+    def holds(self, values: ArrayLike) -> Mask:
+        """Tell which values are allowed; not-a-number never is."""
+        values = np.asarray(values, dtype=np.float64)
+        mask: Mask = (values > self.low) if self.above else (values >= self.low)
+        return mask & (values <= self.high)
 
-_FLOAT = re.compile(
-    r"^(?:[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
-    r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"
-)
-_FLOAT_TAG = "tag:yaml.org,2002:float"
-_Loader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in pairs if tag != _FLOAT_TAG]
-    for first, pairs in _Loader.yaml_implicit_resolvers.items()
-}
-_Loader.add_implicit_resolver(_FLOAT_TAG, _FLOAT, list("-+0123456789."))
+    def __str__(self) -> str:
+        text = f"{'above ' if self.above else ''}{self.low:g} to {self.high:g} {self.unit}"
+        return text.rstrip()
 
 
-def load_yaml(path: Path) -> Any:
-    """Parse a YAML file safely.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read, is too large or is no YAML.
-    """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise FileError(
-                str(path), [f"{path.stat().st_size} bytes, allowed are at most {MAX_BYTES}"]
-            )
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise FileError(str(path), [f"cannot be read: {error.strerror}"]) from None
-    except UnicodeDecodeError as error:
-        raise FileError(str(path), [f"is no text: byte {error.start} is not UTF-8"]) from None
-    try:
-        return yaml.load(text, Loader=_Loader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark
-        place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise FileError(str(path), [f"{place}{error.problem}"]) from None
-    except yaml.YAMLError as error:
-        raise FileError(str(path), [" ".join(str(error).split())]) from None
-    except RecursionError:
-        raise FileError(str(path), ["is nested too deeply"]) from None
-    except ValueError as error:  # a date or number that YAML admits and Python does not
-        raise FileError(str(path), [f"holds a value that cannot be read: {error}"]) from None
+FRACTION = Range(0.0, 1.0, "(root to tip)")
 
 
 @dataclass
@@ -88,6 +55,12 @@ class Notes:
 
     problems: list[str] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
+
+    def shown(self) -> list[str]:
+        """Return each problem once, cut where nobody would read on."""
+        problems = list(dict.fromkeys(self.problems))
+        more = len(problems) - SHOWN_PROBLEMS
+        return problems[:SHOWN_PROBLEMS] + ([f"and {more} more problems"] if more > 0 else [])
 
 
 @dataclass(frozen=True)
@@ -100,7 +73,7 @@ class Node:
 
     def problem(self, message: str) -> None:
         """Note a problem at this place."""
-        self.notes.problems.append(f"{self.path or 'the document'}: {message}")
+        self.notes.problems.append(f"{self.path}: {message}" if self.path else message)
 
     def finding(self, message: str) -> None:
         """Note a remark at this place."""
@@ -112,142 +85,148 @@ class Node:
 
     def __getitem__(self, key: str) -> "Node":
         """Go to a member; a missing one is a problem, noted once."""
-        path = f"{self.path}.{key}" if self.path else key
+        member = Node(_ABSENT, f"{self.path}.{key}" if self.path else key, self.notes)
         if self.value is _ABSENT:
-            return Node(_ABSENT, path, self.notes)
+            return member
         if not isinstance(self.value, dict):
-            self.problem(f"got {_shown(self.value)}, must be a mapping with {key!r}")
-            return Node(_ABSENT, path, self.notes)
-        if self.value.get(key) is None:
-            self.notes.problems.append(f"{path}: is missing, must be given")
-            return Node(_ABSENT, path, self.notes)
-        return Node(self.value[key], path, self.notes)
+            self.problem(f"got {_shown(self.value)}, must be a mapping")
+            return member
+        if not self.has(key):
+            member.problem("is missing, must be given")
+            return member
+        return Node(self.value[key], member.path, self.notes)
 
-    def __iter__(self) -> Iterator["Node"]:
-        """Go through the members of a list."""
-        if self.value is _ABSENT:
-            return
-        if not isinstance(self.value, list):
-            self.problem(f"got {_shown(self.value)}, must be a list")
-            return
-        for i, value in enumerate(self.value):
-            yield Node(value, f"{self.path}[{i}]", self.notes)
+    def members(self) -> list["Node"]:
+        """Return the entries of a list."""
+        return [Node(value, f"{self.path}[{i}]", self.notes) for i, value in self._entries()]
 
     def text(self) -> str | None:
-        """Return the value if it is text."""
-        if isinstance(self.value, str | int) and not isinstance(self.value, bool):
+        """Return the value as text; a number is taken as it is written."""
+        if isinstance(self.value, str | int | float) and not isinstance(self.value, bool):
             return str(self.value)
         if self.value is not _ABSENT:
-            self.problem(f"got {_shown(self.value)}, must be text")
+            self.problem(f"got {_shown(self.value)}, must be a text")
         return None
 
-    def number(self) -> float | None:
-        """Return the value if it is a finite number."""
+    def number(self, allowed: Range) -> float | None:
+        """Return the value if it is a number within `allowed`."""
         if self.value is _ABSENT:
             return None
         number = _number(self.value)
-        if number is None:
-            self.problem(f"got {_shown(self.value)}, must be a finite number")
-        return number
+        if allowed.holds(number):
+            return number
+        self.problem(_refusal(self.value, allowed))
+        return None
 
-    def numbers(self) -> Array | None:
-        """Return the value if it is a list of finite numbers."""
-        if self.value is _ABSENT:
+    def numbers(self, allowed: Range) -> Array | None:
+        """Return the value if it is a list of numbers within `allowed`."""
+        entries = [value for _, value in self._entries()]
+        if not entries:
             return None
-        if not isinstance(self.value, list):
-            self.problem(f"got {_shown(self.value)}, must be a list of numbers")
-            return None
-        numbers = [_number(value) for value in self.value]
-        for i, number in enumerate(numbers):
-            if number is None:
-                self.notes.problems.append(
-                    f"{self.path}[{i}]: got {_shown(self.value[i])}, must be a finite number"
-                )
-        if None in numbers:
-            return None
-        return np.array(numbers, dtype=np.float64)
+        plain = set(map(type, entries)) == {float}
+        values = np.array(entries if plain else [_number(entry) for entry in entries])
+        wrong = np.flatnonzero(~allowed.holds(values))
+        self.each(wrong, lambda i: _refusal(entries[i], allowed))
+        return None if wrong.size else values
 
-    def span(self) -> float | None:
-        """Return the value if it is a span fraction, 0 to 1."""
-        eta = self.number()
-        if eta is None:
-            return None
-        if not -GRID_ROUNDING <= eta <= 1 + GRID_ROUNDING:
-            self.problem(f"got {eta:g}, allowed is 0 (root) to 1 (tip)")
-            return None
-        return min(max(eta, 0.0), 1.0)
+    def each(self, entries: Iterable[Any], message: Callable[[int], str]) -> None:
+        """Note a problem on each of the `entries` of a list, those after the fifth as one."""
+        places = [int(i) for i in entries]
+        for i in places[:SHOWN_ENTRIES]:
+            Node(None, f"{self.path}[{i}]", self.notes).problem(message(i))
+        if len(places) > SHOWN_ENTRIES:
+            self.problem(f"{len(places) - SHOWN_ENTRIES} more entries like these")
 
     def distribution(
-        self, *, factor: float = 1.0, lowest: float | None = None, rising: bool = False
+        self, allowed: Range, *, factor: float = 1.0, rising: bool = False
     ) -> Distribution | None:
         """Return the quantity that `grid` and `values` give.
 
         Parameters
         ----------
+        allowed : Range
+            What each value may be, in the file's unit.
         factor : float
             From the file's unit to metres, radians or fractions.
-        lowest : float, optional
-            Values must be greater.
         rising : bool
             Values must increase.
         """
-        grid, values = self["grid"].numbers(), self["values"].numbers()
+        grid, values = self["grid"].span_fractions(), self["values"].numbers(allowed)
         if grid is None or values is None:
             return None
-        grid, kept = self["grid"]._grid(grid, values)
         if len(grid) != len(values):
             self.problem(f"grid has {len(grid)} entries and values {len(values)}, must be alike")
             return None
-        before = len(self.notes.problems)
-        for i in np.flatnonzero(np.diff(grid[kept]) <= 0):
-            a, b = grid[kept][i : i + 2]
-            self.problem(f"grid[{i + 1}] is {b:g} after {a:g}, must increase")
-        if lowest is not None:
-            for i in np.flatnonzero(values <= lowest):
-                self.problem(f"values[{i}] is {values[i]:g}, must be greater than {lowest:g}")
+        repeated = np.flatnonzero((np.diff(grid) == 0) & (np.diff(values) == 0)) + 1
+        ordered = self["grid"]._increase(grid, repeated)
         if rising:
-            for i in np.flatnonzero(np.diff(values[kept]) <= 0):
-                a, b = values[kept][i : i + 2]
-                self.problem(f"values[{i + 1}] is {b:g} after {a:g}, must increase")
-        if len(kept) < 2:
-            self.problem(f"has {len(kept)} grid points, at least 2 are needed")
-        if len(self.notes.problems) > before:
+            ordered &= self["values"]._increase(values, repeated)
+        if len(grid) - len(repeated) < 2:
+            self["grid"].problem("has 1 entry, at least 2 that differ are needed")
             return None
-        return Distribution(grid[kept], factor * values[kept])
+        if not ordered:
+            return None
+        if repeated.size:
+            self.finding(f"{len(repeated)} repeated entries dropped")
+            grid, values = np.delete(grid, repeated), np.delete(values, repeated)
+        if grid[0] > 0 or grid[-1] < 1:
+            self.finding(f"grid runs {grid[0]:g} to {grid[-1]:g}; beyond it the end value is held")
+        return Distribution(grid, factor * values)
 
-    def _grid(self, grid: Array, values: Array) -> tuple[Array, npt.NDArray[np.intp]]:
-        """Cut rounding off a grid's ends; return it and the entries that are no repetition."""
-        for i in np.flatnonzero((grid < -GRID_ROUNDING) | (grid > 1 + GRID_ROUNDING)):
-            self.notes.problems.append(
-                f"{self.path}[{i}]: got {grid[i]:g}, allowed is 0 (root) to 1 (tip)"
-            )
-        cut = np.clip(grid, 0.0, 1.0)
-        if np.any(cut != grid):
-            self.finding("runs over 0 to 1 by rounding; cut")
-        kept = np.arange(len(cut), dtype=np.intp)
-        if len(cut) == len(values):
-            repeated = (np.diff(cut) == 0) & (np.diff(values) == 0)
-            kept = np.flatnonzero(np.concatenate([[True], ~repeated]))
-            if len(kept) < len(cut):
-                self.finding(f"{len(cut) - len(kept)} repeated entries dropped")
-        return cut, kept
+    def span_fractions(self) -> Array | None:
+        """Return a list of span fractions; what leaves [0, 1] by rounding is cut, and said."""
+        rounded = Range(-GRID_ROUNDING, 1.0 + GRID_ROUNDING)
+        entries = [value for _, value in self._entries()]
+        if not entries:
+            return None
+        values = np.array([_number(entry) for entry in entries])
+        if not rounded.holds(values).all():
+            wrong = np.flatnonzero(~rounded.holds(values))
+            self.each(wrong, lambda i: _refusal(entries[i], FRACTION))
+            return None
+        cut: Array = np.clip(values, 0.0, 1.0)
+        if np.any(cut != values):
+            self.finding("leaves 0 to 1 by rounding; cut")
+        return cut
+
+    def _increase(self, values: Array, repeated: ArrayLike) -> bool:
+        """Tell whether values increase but for `repeated` entries; say which do not."""
+        steps = np.setdiff1d(np.flatnonzero(~(np.diff(values) > 0)) + 1, repeated)
+        self.each(steps, lambda i: f"got {values[i]:g} after {values[i - 1]:g}, must increase")
+        return not steps.size
+
+    def _entries(self) -> Iterator[tuple[int, Any]]:
+        """Go through a list that is neither empty nor too long."""
+        if self.value is _ABSENT:
+            return
+        if not isinstance(self.value, list):
+            self.problem(f"got {_shown(self.value)}, must be a list")
+        elif not 1 <= len(self.value) <= MAX_ENTRIES:
+            self.problem(f"has {len(self.value)} entries, allowed are 1 to {MAX_ENTRIES}")
+        else:
+            yield from enumerate(self.value)
 
 
-def _number(value: Any) -> float | None:
+def _number(value: Any) -> float:
+    """Return a number as a float, anything else as not-a-number."""
     if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
+        return math.nan
     try:
-        number = float(value)
-    except OverflowError:
-        return None
-    return number if math.isfinite(number) else None
+        return float(value)
+    except OverflowError:  # an integer of more than 308 digits
+        return math.inf
+
+
+def _refusal(value: Any, allowed: Range) -> str:
+    demand = "allowed is" if _number(value) == _number(value) else "must be a number,"
+    return f"got {_shown(value)}, {demand} {allowed}"
 
 
 def _shown(value: Any) -> str:
-    """Show a value of any size in a few words."""
+    """Show a value of any kind and size in a few words."""
     if isinstance(value, dict):
         return f"a mapping of {len(value)}"
     if isinstance(value, list):
         return f"a list of {len(value)}"
-    text = repr(value)
-    return text if len(text) <= 40 else text[:37] + "..."
+    text = "nothing" if value is None else repr(value)
+    return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 3] + "..."

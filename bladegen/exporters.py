@@ -14,7 +14,17 @@ from bladegen.blade import Blade
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.files import replacing
 
-__all__ = ["FORMATS", "UNITS", "Format", "Options", "Products", "export", "format_of", "write"]
+__all__ = [
+    "FORMATS",
+    "UNITS",
+    "Format",
+    "Options",
+    "Products",
+    "aside",
+    "export",
+    "format_of",
+    "write",
+]
 
 UNITS = {"m": 1.0, "mm": 1000.0}
 STL_HEADER = 80  # bytes of free text at the start of a binary STL file
@@ -202,21 +212,25 @@ def export(blade: Blade, path: str | Path, **options: Any) -> Path:
     return path
 
 
+def aside(path: Path) -> Path:
+    """Return where a solid is kept that misses its tolerance."""
+    return path.with_suffix(f".out-of-tolerance{path.suffix}")
+
+
 def write(products: Products, path: Path) -> None:
     """Write one file from products that may serve several."""
     writer = format_of(path).write
-    aside = path
-    miss = None
+    target, miss = path, None
     if writer is _write_step:
         solid, tolerance = products.solid(), products.options.tolerance
         if products.options.sections is None and solid.deviation.maximum > tolerance:
-            aside = path.with_suffix(f".out-of-tolerance{path.suffix}")
+            target = aside(path)
             miss = ToleranceError(
                 f"{path}: the solid is {solid.deviation.maximum * 1e3:.3f} mm off the blade at "
                 f"eta = {solid.deviation.eta:.4f}, allowed is {tolerance * 1e3:g} mm; kept as "
-                f"{aside.name}"
+                f"{target.name}"
             )
-    with replacing(aside) as temporary:
+    with replacing(target) as temporary:
         writer(products, temporary)
     if miss is not None:
         raise miss

@@ -1,0 +1,23 @@
+.DEFAULT_GOAL := help
+.PHONY: help demo test bench clean
+
+help: ## show this
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
+
+demo: ## set up and build the IEA 15 MW blade into out/
+	@./scripts/setup.sh
+	.venv/bin/bladegen build iea15mw -o out/
+
+test: ## set up, lint, check types and run all tests
+	@./scripts/setup.sh test
+	.venv/bin/ruff check
+	.venv/bin/ruff format --check
+	.venv/bin/mypy
+	.venv/bin/python -m pytest -n 2 --cov --cov-report=term --cov-fail-under=95
+
+bench: ## print the measured figures
+	@./scripts/setup.sh test
+	@for file in benchmarks/*.py; do echo "== $$file"; .venv/bin/python $$file; done
+
+clean: ## remove what was made here
+	rm -rf .venv out build dist .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache

@@ -1,0 +1,206 @@
+"""Measuring what was made: blades against their definitions, solids and meshes from any file.
+
+Every figure is measured on the thing itself, never assumed from how it was made.  Lengths
+are metres, volumes m3; STEP files state their unit, mesh files do not and are taken as they are.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen import affine, cad, mesh, properties
+from bladegen.arrays import Array
+from bladegen.blade import Blade
+from bladegen.crossing import crossing_sections
+from bladegen.errors import FileError
+from bladegen.sections import SectionSplines
+
+__all__ = ["Check", "check_blade", "check_file", "mesh_figures", "solid_figures"]
+
+SPANS = 200  # spans at which a blade is held against its definition
+SLIVER = 1e-12  # of a mesh's extent; triangles lower than this are degenerate
+MEMBERS = ("solids", "shells", "faces")
+
+
+@dataclass(frozen=True)
+class Check:
+    """What was measured on a file or blade, and what is wrong with it.
+
+    Parameters
+    ----------
+    source : str
+        What was checked.
+    kind : str
+        "solid", "mesh" or "blade".
+    figures : dict
+        Measured figures by name; units stand in the names.
+    problems : tuple of str
+        What keeps it from being usable; none if all is well.
+    """
+
+    source: str
+    kind: str
+    figures: dict[str, Any]
+    problems: tuple[str, ...] = ()
+
+
+def check_file(path: Path) -> Check:
+    """Measure a STEP or mesh file that anyone made.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or is of no known format.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in _READERS:
+        raise FileError(str(path), [f"suffix {suffix!r}, allowed are {', '.join(_READERS)}"])
+    if not path.is_file():
+        raise FileError(str(path), ["is no file"])
+    kind, reader, measure, wanted = _READERS[suffix]
+    figures = measure(reader(path))
+    problems = tuple(message for key, message in wanted if not figures[key])
+    return Check(str(path), kind, figures, problems)
+
+
+def solid_figures(shape: Any, *, quick: bool = False) -> dict[str, Any]:
+    """Measure a shape of OCCT [mm]: topology, validity, volume, area, bounding box.
+
+    `quick` takes OCCT's coarse volume, off by up to 1e-3: good for comparing a shape with
+    its copy, not for quoting.
+    """
+    from OCP.Bnd import Bnd_Box
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepBndLib import BRepBndLib
+    from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
+    from OCP.TopExp import TopExp_Explorer
+
+    members: dict[str, list[Any]] = {}
+    for key, kind in zip(MEMBERS, (TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE), strict=True):
+        explorer, found = TopExp_Explorer(shape, kind), []
+        while explorer.More():
+            found.append(explorer.Current())
+            explorer.Next()
+        members[key] = found
+    box = Bnd_Box()
+    BRepBndLib.AddOptimal_s(shape, box, False, False)
+    bounds = np.array(box.Get() if not box.IsVoid() else (0.0,) * 6) / cad.MILLIMETRES
+    shells = members["shells"]
+    closed = bool(shells) and all(BRep_Tool.IsClosed_s(shell) for shell in shells)
+    accuracy = cad.COARSE_VOLUME if quick else cad.VOLUME_TOLERANCE
+    return {
+        **{key: len(found) for key, found in members.items()},
+        "valid": cad.is_valid(shape),
+        "closed": closed,
+        "one_solid": len(members["solids"]) == 1,
+        "volume_m3": cad.volume(shape, accuracy) / cad.MILLIMETRES**3,
+        "area_m2": cad.area(shape) / cad.MILLIMETRES**2,
+        "bounds_m": _bounds(bounds.reshape(2, 3)),
+    }
+
+
+def mesh_figures(triangles: Any) -> dict[str, Any]:
+    """Measure a trimesh.Trimesh: closedness, orientation, volume, area, bounding box."""
+    extent = float(np.max(triangles.extents)) if len(triangles.vertices) else 0.0
+    corners = np.asarray(triangles.triangles)
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    height = np.divide(
+        2.0 * triangles.area_faces, longest, out=np.zeros_like(longest), where=longest > 0
+    )
+    degenerate = int(np.count_nonzero(height <= SLIVER * extent))
+    watertight = bool(triangles.is_watertight)
+    return {
+        "triangles": len(triangles.faces),
+        "vertices": len(triangles.vertices),
+        "watertight": watertight,
+        "outward": watertight and bool(triangles.is_winding_consistent and triangles.volume > 0),
+        "degenerate_triangles": degenerate,
+        "no_degenerate_triangle": degenerate == 0,
+        "volume": float(triangles.volume),
+        "area": float(triangles.area),
+        "bounds": _bounds(np.asarray(triangles.bounds)) if extent else None,
+    }
+
+
+def check_blade(blade: Blade) -> Check:
+    """Hold a blade against its own definition, and look for sections that cross themselves."""
+    eta = np.unique(np.concatenate([np.linspace(0.0, 1.0, SPANS), blade.eta]))
+    profiles = blade.profiles(eta)
+    curves = SectionSplines(blade.u).fit(profiles)
+    thickness = blade.definition.relative_thickness
+    figures: dict[str, Any] = {
+        "stations": len(blade.eta),
+        "landmarks": len(blade.u),
+        "length_m": blade.length,
+        "volume_m3": properties.volume(blade),
+        "stations_missed_by_chord": float(_missed(blade).max()),
+        "chord_error_relative": float(np.abs(curves.chord - 1.0).max()),
+        "twist_error_deg": float(np.degrees(np.abs(_twist_error(blade, eta, profiles)).max())),
+        "thickness_error": None
+        if thickness is None
+        else float(np.abs(curves.relative_thickness - thickness(eta)).max()),
+        "findings": [str(finding) for finding in blade.findings],
+    }
+    finished = blade.trailing_edge(profiles, blade.chord(eta))
+    problems = [
+        f"section at eta = {eta[k]:.4f} crosses itself" for k in crossing_sections(finished)
+    ]
+    figures["sections_crossing"] = len(problems)
+    return Check(blade.definition.source or blade.name, "blade", figures, tuple(problems))
+
+
+def _missed(blade: Blade) -> Array:
+    """Return how far a blade is from its stations' airfoils, up to a stretch [chord]."""
+    splines = SectionSplines(blade.u)
+    airfoils = affine.restore(blade.points, blade.M, blade.b)
+    profiles = blade.profiles(blade.eta)
+    if blade.definition.relative_thickness is None:
+        wanted = None
+    else:
+        wanted = splines.fit(profiles).relative_thickness
+    A, c = splines.normalising(airfoils, wanted)
+    missed: Array = np.abs(affine.restore(airfoils, A, c) - profiles).max(axis=(1, 2))
+    return missed
+
+
+def _twist_error(blade: Blade, eta: Array, profiles: Array) -> Array:
+    """Return the turn of placed sections in their planes, less the definition's twist [rad]."""
+    placed = blade.planform.place(profiles, eta) - blade.axis(eta)[:, None]
+    flat = placed @ blade.planform.frames(eta)[:, :2].mT
+    along = flat[..., ::-1] - flat[..., ::-1].mean(axis=1, keepdims=True)
+    own = profiles - profiles.mean(axis=1, keepdims=True)
+    turn = own.mT @ along
+    angle = np.arctan2(turn[:, 0, 1] - turn[:, 1, 0], turn[:, 0, 0] + turn[:, 1, 1])
+    error: Array = angle - blade.twist(eta)
+    return error
+
+
+def _bounds(corners: Array) -> list[list[float]]:
+    return [[round(float(value), 6) for value in corner] for corner in corners]
+
+
+_SOLID_NEEDS = (
+    ("one_solid", "must be one solid"),
+    ("valid", "OCCT finds the shape invalid"),
+    ("closed", "is not closed"),
+)
+_MESH_NEEDS = (
+    ("watertight", "is not watertight"),
+    ("outward", "does not face outward throughout"),
+    ("no_degenerate_triangle", "has degenerate triangles"),
+)
+_Reader = tuple[
+    str,
+    Callable[[Path], Any],
+    Callable[[Any], dict[str, Any]],
+    tuple[tuple[str, str], ...],
+]
+_SOLID: _Reader = ("solid", cad.read_step, solid_figures, _SOLID_NEEDS)
+_MESH: _Reader = ("mesh", mesh.read, mesh_figures, _MESH_NEEDS)
+_READERS = {
+    **dict.fromkeys((".step", ".stp"), _SOLID),
+    **dict.fromkeys((".stl", ".glb", ".ply", ".obj", ".3mf", ".off"), _MESH),
+}

@@ -1,0 +1,309 @@
+"""The command line: parse, call, print.  Nothing is computed here."""
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen import __version__
+from bladegen.errors import BladegenError
+
+__all__ = ["app", "main"]
+
+app = typer.Typer(
+    name="bladegen",
+    help="Wind turbine blades from spanwise tables to STEP solids, meshes and pictures.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class PathKind(StrEnum):
+    """How stations are joined."""
+
+    geodesic = "geodesic"
+    spline = "spline"
+
+
+class TipKind(StrEnum):
+    """How the tip is closed."""
+
+    flat = "flat"
+    round = "round"
+
+
+class Unit(StrEnum):
+    """Units of mesh files."""
+
+    m = "m"
+    mm = "mm"
+
+
+class Planes(StrEnum):
+    """Which way section planes face."""
+
+    axis = "axis"
+    z = "z"
+
+
+BladeName = Annotated[
+    str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a windIO file.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
+PathOption = Annotated[
+    PathKind, typer.Option("--path", help="Join stations by geodesics or by a smooth spline.")
+]
+PlanesOption = Annotated[
+    Planes, typer.Option("--planes", help="Section planes normal to the reference axis or to z.")
+]
+EdgeOption = Annotated[
+    str,
+    typer.Option(
+        "--trailing-edge",
+        metavar="LENGTH|given|sharp",
+        help="Least thickness of the trailing edge, such as 2mm; or as given; or sharp.",
+    ),
+]
+
+
+def main() -> None:
+    """Run the command line; a `BladegenError` is one line on stderr and exit code 1."""
+    try:
+        app()
+    except BladegenError as error:
+        sys.stderr.write(f"bladegen: {' '.join(str(error).split())}\n")
+        sys.exit(1)
+    except KeyboardInterrupt:
+        sys.stderr.write("bladegen: interrupted\n")
+        sys.exit(130)
+
+
+@app.callback(invoke_without_command=True)
+def version(
+    show: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Wind turbine blades from spanwise tables to STEP solids, meshes and pictures."""
+    if show:
+        typer.echo(f"bladegen {__version__}")
+        raise typer.Exit
+
+
+@app.command("list")
+def list_blades() -> None:
+    """List the bundled blades."""
+    from bladegen.readers import bundled, read
+
+    rows = []
+    for name in bundled():
+        definition = read(name)
+        rows.append(
+            [
+                name,
+                definition.description,
+                f"{definition.length:.1f} m",
+                str(len({station.airfoil.name for station in definition.stations})),
+            ]
+        )
+    _table(["name", "blade", "length", "airfoils"], rows)
+
+
+@app.command()
+def info(blade: BladeName, as_json: Json = False) -> None:
+    """Show what a blade's definition holds."""
+    from bladegen.readers import read
+    from bladegen.tables import definition_figures, station_rows
+
+    definition = read(blade)
+    figures = definition_figures(definition)
+    if as_json:
+        typer.echo(json.dumps(figures, indent=2))
+        return
+    _figures(figures["blade"], {k: v for k, v in figures.items() if not isinstance(v, list)})
+    _table(
+        ["eta", "z m", "airfoil", "chord m", "twist deg", "thickness"],
+        station_rows(definition),
+        title="stations",
+    )
+    _findings(figures["findings"])
+
+
+@app.command()
+def build(
+    blade: BladeName,
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
+    formats: Annotated[
+        list[str] | None,
+        typer.Option("--format", help="step stl glb png ply obj 3mf vtp; may be repeated."),
+    ] = None,
+    landmarks: Landmarks = 401,
+    stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300,
+    path: PathOption = PathKind.geodesic,
+    planes: PlanesOption = Planes.axis,
+    tolerance: Annotated[
+        str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
+    ] = "0.3mm",
+    trailing_edge: EdgeOption = "2mm",
+    tip: Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")] = TipKind.flat,
+    unit: Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ and VTP files.")] = Unit.m,
+) -> None:
+    """Build a blade: a STEP solid, meshes, a picture and a report."""
+    from bladegen import cad
+    from bladegen.build import DEFAULT_FORMATS
+    from bladegen.build import build as build_files
+    from bladegen.errors import ToleranceError
+    from bladegen.exporters import Options
+    from bladegen.lengths import metres
+
+    made = _blade(blade, landmarks, path, planes, trailing_edge)
+    options = Options(
+        tolerance=metres(tolerance, "tolerance"),
+        stations=stations,
+        tip={"flat": cad.flat_tip, "round": cad.round_tip}[tip],
+        unit=unit,
+    )
+    miss = None
+    with _progress() as progress:
+        try:
+            build_files(
+                made, output, formats=formats or DEFAULT_FORMATS, options=options, progress=progress
+            )
+        except ToleranceError as error:
+            miss = error
+    _summary(output, made.name)
+    if miss is not None:
+        raise miss
+
+
+@app.command()
+def preview(
+    blade: BladeName,
+    screenshot: Annotated[
+        Path | None, typer.Option(help="Write a PNG instead of opening a window.")
+    ] = None,
+    html: Annotated[Path | None, typer.Option(help="Write a page that turns in a browser.")] = None,
+    landmarks: Landmarks = 401,
+    path: PathOption = PathKind.geodesic,
+    planes: PlanesOption = Planes.axis,
+    trailing_edge: EdgeOption = "2mm",
+) -> None:
+    """Look at a blade in a window, as a picture or as a web page."""
+    from bladegen import preview as view
+    from bladegen.files import replacing
+
+    made = _blade(blade, landmarks, path, planes, trailing_edge)
+    for target, write in ((screenshot, view.picture), (html, view.html)):
+        if target is not None:
+            with replacing(target) as temporary:
+                write(made, temporary)
+            typer.echo(f"wrote {target}")
+    if screenshot is None and html is None:
+        view.show(made)
+
+
+@app.command()
+def check(
+    file: Annotated[
+        str, typer.Argument(metavar="FILE", help="A STEP or mesh file, or a blade definition.")
+    ],
+    as_json: Json = False,
+) -> None:
+    """Measure a solid, a mesh or a blade definition; exit with 1 if it is not sound."""
+    from bladegen import checks
+    from bladegen.readers import SUFFIXES, bundled
+
+    if file in bundled() or Path(file).suffix.lower() in SUFFIXES:
+        result = checks.check_blade(_blade(file, 401, PathKind.geodesic, Planes.axis, "2mm"))
+    else:
+        result = checks.check_file(Path(file))
+    if as_json:
+        typer.echo(
+            json.dumps(
+                {
+                    "source": result.source,
+                    "kind": result.kind,
+                    **result.figures,
+                    "problems": list(result.problems),
+                },
+                indent=2,
+            )
+        )
+    else:
+        figures = {k: v for k, v in result.figures.items() if k != "findings"}
+        _figures(f"{result.source} ({result.kind})", figures)
+        _findings(result.figures.get("findings", []))
+    if result.problems:
+        raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
+
+
+def _blade(source: str, landmarks: int, path: str, planes: Planes, edge: str) -> Any:
+    """Read and build a blade as the options say."""
+    from bladegen.blade import Blade
+    from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
+    from bladegen.lengths import metres
+    from bladegen.planform import normal_to_axis, normal_to_z
+    from bladegen.readers import read
+
+    named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
+    return Blade.from_definition(
+        read(source),
+        landmarks=landmarks,
+        path=path,
+        planes={"axis": normal_to_axis, "z": normal_to_z}[planes],
+        trailing_edge=named.get(edge) or MinimumThickness(metres(edge, "trailing-edge")),
+    )
+
+
+@contextmanager
+def _progress() -> Iterator[Any]:
+    """Show what is being done and for how long, on a terminal."""
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("starting", total=None)
+        yield lambda message: bar.update(task, description=message)
+
+
+def _summary(folder: Path, name: str) -> None:
+    """Print a report's main figures and the files."""
+    from bladegen.build import report_path
+    from bladegen.tables import report_rows
+
+    path = report_path(folder, name)
+    report = json.loads(path.read_text(encoding="utf-8"))
+    _table(["figure", "measured"], report_rows(report), title=report["blade"])
+    rows = [[str(folder / f["name"]), f"{f['bytes'] / 1e6:.1f} MB"] for f in report["files"]]
+    rows.append([str(path), "all figures"])
+    _table(["file", "size"], rows)
+    _findings(report["figures"]["findings"])
+
+
+def _figures(title: str, figures: dict[str, Any]) -> None:
+    from bladegen.tables import shown
+
+    rows = [[key.replace("_", " "), shown(value)] for key, value in figures.items()]
+    _table(["figure", "value"], rows, title=title)
+
+
+def _table(columns: list[str], rows: list[list[str]], title: str | None = None) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(*columns, title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table, markup=False, highlight=False)
+
+
+def _findings(findings: list[str]) -> None:
+    for finding in findings:
+        typer.echo(f"note: {finding}")

@@ -1,0 +1,113 @@
+"""Figures as rows of text: what the command line and notebooks show of a blade."""
+
+from typing import Any
+
+import numpy as np
+
+from bladegen.arrays import Array
+from bladegen.definition import BladeDefinition, Distribution
+
+__all__ = ["definition_figures", "report_rows", "shown", "station_rows"]
+
+
+def definition_figures(definition: BladeDefinition) -> dict[str, Any]:
+    """Return what a definition holds, in metres and degrees.
+
+    Taken at the definition's own grid points, between which monotone splines do not rise
+    above or fall below them; nothing is interpolated, so this is quick.
+    """
+    chord, twist, axis = definition.chord, definition.twist, definition.axis
+    thickest = int(np.argmax(chord.values))
+    rotor = definition.rotor
+    return {
+        "blade": definition.name,
+        "description": definition.description,
+        "source": definition.source,
+        "length_m": float(axis.z.values[-1] - axis.z.values[0]),
+        "root_chord_m": float(chord.values[0]),
+        "largest_chord_m": float(chord.values[thickest]),
+        "largest_chord_at_eta": float(chord.grid[thickest]),
+        "tip_chord_m": float(chord.values[-1]),
+        "root_twist_deg": float(np.degrees(twist.values[0])),
+        "tip_twist_deg": float(np.degrees(twist.values[-1])),
+        "tip_prebend_m": float(axis.x.values[-1]),
+        "tip_sweep_m": float(axis.y.values[-1]),
+        "thickness_distribution": definition.relative_thickness is not None,
+        "hub_radius_m": rotor.hub_radius,
+        "rotor_diameter_m": rotor.diameter,
+        "blades": rotor.blades,
+        "stations": [
+            {"eta": station.eta, "airfoil": station.airfoil.name} for station in definition.stations
+        ],
+        "findings": [str(finding) for finding in definition.findings],
+    }
+
+
+def station_rows(definition: BladeDefinition) -> list[list[str]]:
+    """Return a row a station: eta, z, airfoil, chord, twist, thickness."""
+    eta = np.array([station.eta for station in definition.stations])
+    z, chord = _between(definition.axis.z, eta), _between(definition.chord, eta)
+    twist = np.degrees(_between(definition.twist, eta))
+    thickness = definition.relative_thickness
+    ratios = np.full(len(eta), np.nan) if thickness is None else _between(thickness, eta)
+    return [
+        [
+            f"{station.eta:.4f}",
+            f"{z[i]:.2f}",
+            station.airfoil.name,
+            f"{chord[i]:.3f}",
+            f"{twist[i]:.2f}",
+            "" if thickness is None else f"{ratios[i]:.3f}",
+        ]
+        for i, station in enumerate(definition.stations)
+    ]
+
+
+def _between(quantity: Distribution, eta: Array) -> Array:
+    """Interpolate linearly: enough for three digits on the screen, without loading scipy."""
+    return np.interp(eta, quantity.grid, quantity.values)
+
+
+def report_rows(report: dict[str, Any]) -> list[list[str]]:
+    """Return the main figures of a build report."""
+    figures = report["figures"]
+    rows = [
+        ["length", f"{figures['length_m']:.3f} m"],
+        ["volume by its sections", f"{figures['volume_m3']:.4f} m3"],
+        ["stations missed by", f"{figures['stations_missed_by_chord']:.1e} chord"],
+        ["chord off its spline by", f"{figures['chord_error_relative']:.1e}"],
+        ["twist off its spline by", f"{figures['twist_error_deg']:.1e} deg"],
+    ]
+    if figures["thickness_error"] is not None:
+        rows.append(["thickness off its spline by", f"{figures['thickness_error']:.1e} chord"])
+    if "solid" in report:
+        solid = report["solid"]
+        deviation = solid["deviation_mm"]
+        sound = "valid" if solid["valid"] else "invalid"
+        closed = "closed" if solid["closed"] else "open"
+        rows += [
+            ["solid", f"{solid['solids']} {sound}, {closed}, {solid['faces']} faces"],
+            ["solid off the blade by", f"{deviation['maximum']:.3f} mm at most"],
+            ["", f"{deviation['rms']:.4f} mm RMS"],
+            ["solid's volume off by", f"{solid['volume_against_sections']:.1e}"],
+            ["volume change on reading", f"{solid['volume_change_on_reading']:.1e}"],
+        ]
+    for suffix, figures_ in report.get("meshes", {}).items():
+        sound = "watertight" if figures_["watertight"] else "not watertight"
+        rows.append([f"{suffix} mesh", f"{figures_['triangles']} triangles, {sound}"])
+    rows.append(["time", f"{sum(report['seconds'].values()):.1f} s"])
+    return rows
+
+
+def shown(value: Any) -> str:
+    """Return a figure as text: six digits, yes or no, lists on one line."""
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list):
+        parts = (f"({shown(item)})" if isinstance(item, list) else shown(item) for item in value)
+        return ", ".join(parts)
+    return str(value)

@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# Set bladegen up in .venv: ./scripts/setup.sh [EXTRA]
+# Finds out which shared libraries are missing and installs them where it may; makes a virtual
+# environment; installs bladegen with the extra. A second run with nothing changed is quick.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+extra="${1:-}"
+
+fail() {
+    printf 'setup: %s\n' "$1" >&2
+    exit 1
+}
+
+find_python() {
+    local name
+    for name in "${PYTHON:-}" python3.13 python3.12 python3.11 python3; do
+        if [ -n "$name" ] && command -v "$name" >/dev/null 2>&1 &&
+            "$name" -c 'import sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null; then
+            command -v "$name"
+            return
+        fi
+    done
+    fail "needs Python 3.11 to 3.13 with venv; on Debian: apt-get install python3 python3-venv"
+}
+
+# Prints the Debian packages of the shared libraries that cannot be loaded.
+missing_packages() {
+    "$1" - <<'PY'
+import ctypes
+
+LIBRARIES = {
+    "libGL.so.1": "libgl1",
+    "libX11.so.6": "libx11-6",
+    "libXrender.so.1": "libxrender1",
+    "libEGL.so.1": "libegl1",
+    "libEGL_mesa.so.0": "libegl-mesa0",
+    "libexpat.so.1": "libexpat1",
+}
+
+
+def loads(name):
+    try:
+        ctypes.CDLL(name)
+    except OSError:
+        return False
+    return True
+
+
+print(*sorted({package for name, package in LIBRARIES.items() if not loads(name)}))
+PY
+}
+
+install_libraries() {
+    local packages sudo=""
+    packages="$(missing_packages "$1")"
+    [ -n "$packages" ] || return 0
+    local line="apt-get install -y --no-install-recommends $packages"
+    if ! command -v apt-get >/dev/null 2>&1; then
+        fail "missing shared libraries; on Debian they come with: $packages"
+    fi
+    if [ "$(id -u)" -ne 0 ]; then
+        sudo -n true 2>/dev/null || fail "missing shared libraries; type: sudo $line"
+        sudo="sudo -n"
+    fi
+    printf 'setup: installing %s\n' "$packages"
+    $sudo apt-get update -qq || true
+    # shellcheck disable=SC2086  # the packages are words
+    DEBIAN_FRONTEND=noninteractive $sudo $line >/dev/null || fail "could not: $line"
+    packages="$(missing_packages "$1")"
+    [ -z "$packages" ] || fail "still missing after the install: $packages"
+}
+
+python="$(find_python)"
+install_libraries "$python"
+[ -x .venv/bin/python ] || "$python" -m venv .venv
+stamp=".venv/.bladegen-${extra:-plain}"
+if [ ! -f "$stamp" ] || [ pyproject.toml -nt "$stamp" ]; then
+    printf 'setup: installing bladegen into .venv (about two minutes and 2 GB)\n'
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".${extra:+[$extra]}"
+    touch "$stamp"
+fi

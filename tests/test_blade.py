@@ -1,0 +1,179 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from bladegen import affine
+from bladegen.blade import Blade
+from bladegen.definition import Distribution
+from bladegen.edges import AsGiven
+from bladegen.errors import DefinitionError
+from bladegen.landmarks import landmarks
+from bladegen.readers import bundled, read
+from bladegen.sections import SectionSplines
+from strategies import SEEDS, definitions
+
+N = 101
+PATHS = st.sampled_from(["geodesic", "spline"])
+SPANS = np.linspace(0, 1, 41)
+NAMES = pytest.mark.parametrize("name", bundled())
+
+
+def unit_chord(blade):
+    """The stations' airfoils by their landmarks, brought to unit chord."""
+    shapes = np.stack(
+        [landmarks(s.airfoil.coordinates, len(blade.u)) for s in blade.definition.stations]
+    )
+    return shapes / SectionSplines(blade.u).fit(shapes).chord[:, None, None]
+
+
+@given(definitions(thickness=False), PATHS)
+def test_a_blade_passes_through_its_stations(definition, path):
+    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    assert_allclose(blade.profiles(blade.eta), unit_chord(blade), atol=1e-11)
+
+
+@given(definitions(thickness=True), PATHS)
+def test_with_a_thickness_distribution_up_to_a_stretch(definition, path):
+    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    profiles, airfoils = blade.profiles(blade.eta), unit_chord(blade)
+    X, Y = affine.standardise(profiles)[0], affine.standardise(airfoils)[0]
+    assert_allclose(X @ X.mT, Y @ Y.mT, atol=1e-10)
+
+
+@given(definitions(), PATHS)
+def test_chord_and_thickness_are_those_of_the_definition(definition, path):
+    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    curves = SectionSplines(blade.u).fit(blade.profiles(SPANS))
+    assert_allclose(curves.chord, 1.0, atol=1e-9)
+    assert_allclose(blade.chord(SPANS), definition.chord(SPANS), atol=0)
+    assert_allclose(blade.twist(SPANS), definition.twist(SPANS), atol=0)
+    if definition.relative_thickness is not None:
+        wanted = definition.relative_thickness(SPANS)
+        assert_allclose(curves.relative_thickness, wanted, atol=1e-9)
+
+
+@given(definitions(thickness=False), PATHS)
+def test_between_identical_neighbours_nothing_changes(definition, path):
+    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    circles = blade.profiles(np.linspace(0, blade.eta[1], 9))
+    assert_allclose(circles, np.broadcast_to(circles[:1], circles.shape), atol=1e-12)
+
+
+@given(definitions(), PATHS, SEEDS)
+def test_results_do_not_depend_on_representatives(definition, path, seed):
+    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    turns = np.linalg.qr(np.random.default_rng(seed).normal(size=(len(blade.eta), 2, 2))).Q
+    turns[:, :, 0] *= np.linalg.det(turns)[:, None]
+    turned = replace(blade, points=blade.points @ turns, M=turns.mT @ blade.M)
+    assert_allclose(turned.profiles(SPANS), blade.profiles(SPANS), atol=1e-9)
+
+
+@given(definitions(), PATHS)
+def test_a_batch_equals_its_parts(definition, path):
+    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    whole = blade.sections(SPANS)
+    assert_allclose(blade.sections(SPANS.reshape(-1, 1))[:, 0], whole, atol=0)
+    for i in (0, 7, 40):
+        assert_allclose(blade.sections(SPANS[i]), whole[i], atol=1e-11)
+        assert_allclose(blade.profiles(SPANS[i : i + 1])[0], blade.profiles(SPANS)[i], atol=1e-11)
+
+
+@given(definitions(), PATHS)
+def test_points_between_landmarks_lie_on_the_same_sections(definition, path):
+    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    finer = np.sort(np.concatenate([blade.u, 0.5 * (blade.u[1:] + blade.u[:-1])]))
+    assert_allclose(blade.sections(SPANS, finer)[:, ::2], blade.sections(SPANS), atol=1e-8)
+    by_splines = replace(blade, contours=None)
+    assert_allclose(by_splines.sections(SPANS, finer), blade.sections(SPANS, finer), atol=0.05)
+
+
+@settings(max_examples=15)
+@given(definitions(), st.integers(20, 90))
+def test_stations_hold_what_they_must_and_increase(definition, count):
+    blade = Blade.from_definition(definition, landmarks=N)
+    stations = blade.stations(count)
+    assert len(stations) == count
+    assert np.all(np.diff(stations) > 0)
+    assert {0.0, 1.0, *blade.eta} <= set(stations)
+
+
+def test_stations_crowd_where_the_blade_bends():
+    blade = Blade.from_definition(read("iea15mw"), landmarks=N)
+    stations = blade.stations(200)
+    assert np.median(np.diff(stations[stations < 0.2])) < np.median(np.diff(stations))
+    middle = 0.5 * (stations[1:] + stations[:-1])
+    straight = 0.5 * (blade.sections(stations[1:]) + blade.sections(stations[:-1]))
+    even = np.linspace(0, 1, 200)
+    evenly = 0.5 * (blade.sections(even[1:]) + blade.sections(even[:-1]))
+    error = np.abs(blade.sections(middle) - straight).max()
+    assert error < np.abs(blade.sections(0.5 * (even[1:] + even[:-1])) - evenly).max()
+
+
+def test_a_straight_prism_gets_even_stations():
+    definition = read("nrel5mw")
+    flat = Distribution.constant
+    cylinder = replace(
+        definition,
+        stations=tuple(replace(definition.stations[1], eta=eta) for eta in (0.0, 1.0)),
+        chord=flat(3.0),
+        twist=flat(0.0),
+        relative_thickness=None,
+        section_offset_y=flat(1.5),
+        axis=replace(definition.axis, z=Distribution(np.array([0.0, 1.0]), np.array([0.0, 9.0]))),
+    )
+    stations = Blade.from_definition(cylinder, landmarks=N).stations(11)
+    assert np.diff(stations).max() < 1.01 * np.diff(stations).min()
+
+
+@NAMES
+@pytest.mark.parametrize("path", ["geodesic", "spline"])
+def test_reference_blades_meet_the_design(name, path):
+    definition = read(name)
+    blade = Blade.from_definition(definition, path=path)
+    eta = np.random.default_rng(5).uniform(0, 1, 100)
+    curves = SectionSplines(blade.u).fit(blade.profiles(eta))
+    assert_allclose(curves.chord, 1.0, atol=1e-9)
+    assert_allclose(curves.relative_thickness, definition.relative_thickness(eta), atol=1e-9)
+    plain = Blade.from_definition(replace(definition, relative_thickness=None), path=path)
+    assert_allclose(plain.profiles(plain.eta), unit_chord(plain), atol=1e-9)
+
+
+@NAMES
+def test_trailing_edges_keep_their_minimum(name):
+    blade = Blade.from_definition(read(name))
+    sections = blade.sections(SPANS)
+    gap = np.linalg.norm(sections[:, 0] - sections[:, -1], axis=1)
+    assert gap.min() > 0.002 - 1e-9
+    given_ = blade.with_trailing_edge(AsGiven()).sections(SPANS)
+    moved = np.linalg.norm(given_ - sections, axis=-1)
+    assert moved.max() < 0.001 + 1e-9
+
+
+def test_findings_name_the_blunt_base_and_thickness_that_disagrees():
+    iea = Blade.from_definition(read("iea15mw"), landmarks=N)
+    assert any("SNL-FFA-W3-500" in str(f) and "blunt base" in str(f) for f in iea.findings)
+    nrel = Blade.from_definition(read("nrel5mw"), landmarks=N)
+    assert any("DU40_A17" in str(f) and "0.405" in str(f) for f in nrel.findings)
+
+
+def test_arrays_of_a_blade_cannot_be_written():
+    blade = Blade.from_definition(read("nrel5mw"), landmarks=N)
+    for field in ("u", "eta", "points", "M", "b"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(blade, field)[0] = 0.0
+
+
+def test_wrong_values_are_refused():
+    definition = read("nrel5mw")
+    with pytest.raises(DefinitionError, match="path: got 'cubic', allowed are geodesic, spline"):
+        Blade.from_definition(definition, path="cubic")
+    blade = Blade.from_definition(definition, landmarks=N)
+    for bad in (-0.1, 1.1, np.nan):
+        with pytest.raises(DefinitionError, match=r"allowed is 0 \(root\) to 1 \(tip\)"):
+            blade.sections([0.5, bad])
+    with pytest.raises(DefinitionError, match="at least 9 are needed"):
+        blade.stations(8)

@@ -1,0 +1,143 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from bladegen import affine, grassmann
+from bladegen.definition import Distribution
+from bladegen.interpolation import (
+    GeodesicPath,
+    Parameter,
+    SectionSpline,
+    geodesic_path,
+    spline_path,
+)
+from bladegen.landmarks import landmarks
+from strategies import SEEDS, circle, maps, naca, random_points, random_tangent
+
+KNOTS = np.array([0.0, 0.2, 0.5, 0.6, 1.0])
+SHAPES = np.stack(
+    [landmarks(xy, 101) for xy in (circle(), circle(), naca(0.4, 0, 0.01), naca(0.2, 0.03, 0.003))]
+    + [landmarks(naca(0.2, 0.03, 0.003), 101)]
+)
+X, M, b = affine.standardise(SHAPES)
+MAKERS = pytest.mark.parametrize("maker", [geodesic_path, spline_path])
+
+
+@MAKERS
+def test_paths_pass_through_their_stations(maker):
+    path, maps_ = maker(KNOTS, X, M)
+    assert_allclose(path(KNOTS) @ maps_, X @ M, atol=1e-12)
+
+
+@MAKERS
+def test_paths_stay_on_the_manifold(maker):
+    points = maker(KNOTS, X, M)[0](np.linspace(0, 1, 57))
+    assert_allclose(points.mT @ points, np.broadcast_to(np.eye(2), (57, 2, 2)), atol=1e-12)
+
+
+@MAKERS
+def test_identical_neighbours_are_constant(maker):
+    path, _ = maker(KNOTS, X, M)
+    for first, last in ((0.0, 0.2), (0.6, 1.0)):
+        between = path(np.linspace(first, last, 11))
+        assert_allclose(between, np.broadcast_to(between[:1], between.shape), atol=1e-13)
+
+
+@MAKERS
+def test_a_batch_equals_its_parts(maker):
+    path, _ = maker(KNOTS, X, M)
+    q = np.linspace(0, 1, 23)
+    assert_allclose(path(q), np.concatenate([path(q[i : i + 1]) for i in range(23)]), atol=1e-13)
+
+
+@MAKERS
+@given(seed=SEEDS)
+def test_paths_do_not_depend_on_representatives(maker, seed):
+    turns = np.linalg.qr(np.random.default_rng(seed).normal(size=(5, 2, 2))).Q
+    turns *= np.sign(np.linalg.det(turns))[:, None, None] * [[1.0, 1.0], [1.0, 1.0]]
+    turns[:, :, 0] *= np.sign(np.linalg.det(turns))[:, None]
+    q = np.linspace(0, 1, 9)
+    plain, turned = maker(KNOTS, X, M)[0](q), maker(KNOTS, X @ turns, turns.mT @ M)[0](q)
+    assert_allclose(plain @ plain.mT, turned @ turned.mT, atol=1e-9)
+
+
+@given(SEEDS)
+def test_between_two_stations_the_path_is_the_geodesic(seed):
+    rng = np.random.default_rng(seed)
+    start = random_points(rng, 1, 12)[0]
+    end = grassmann.exp(start, random_tangent(rng, start, 0.8))
+    path = GeodesicPath(np.array([0.0, 2.0]), np.stack([start, grassmann.align(start, end)]))
+    middle = path(np.array([1.0]))[0]
+    wanted = grassmann.exp(start, 0.5 * grassmann.log(start, end))
+    assert_allclose(middle, wanted, atol=1e-12)
+    assert_allclose(path.distances[-1], grassmann.distance(start, end), atol=1e-12)
+
+
+def test_speed_along_the_geodesic_path_is_continuous():
+    path, _ = geodesic_path(KNOTS, X, M)
+    h = 1e-6
+    for knot in KNOTS[1:-1]:
+        before, at, after = path(knot + np.array([-h, 0.0, h]))
+        speeds = grassmann.distance(before, at) / h, grassmann.distance(at, after) / h
+        assert speeds[0] == pytest.approx(speeds[1], abs=1e-4)
+
+
+def test_the_spline_path_has_no_kink():
+    path, _ = spline_path(KNOTS, X, M)
+    h = 1e-6
+    for knot in KNOTS[1:-1]:
+        before, at, after = path(knot + np.array([-h, 0.0, h]))
+        assert_allclose((at - before) / h, (after - at) / h, atol=1e-3)
+
+
+def test_a_spline_path_of_two_stations_is_the_geodesic():
+    path, _ = spline_path(np.array([0.0, 1.0]), X[1:3], M[1:3])
+    geodesic, _ = geodesic_path(np.array([0.0, 1.0]), X[1:3], M[1:3])
+    q = np.linspace(0, 1, 7)
+    assert np.max(grassmann.distance(path(q), geodesic(q))) < 1e-10
+
+
+@given(st.lists(maps(), min_size=3, max_size=3), SEEDS)
+def test_section_splines_pass_through_and_never_become_singular(M, seed):
+    M = np.stack(M)
+    M = np.stack([M[0], M[0] @ affine.twist(np.array(0.4)), M[2]])
+    knots, b = np.array([0.0, 0.3, 1.0]), np.random.default_rng(seed).normal(size=(3, 2))
+    spline = SectionSpline(knots, M, b)
+    at, shift = spline(knots)
+    assert_allclose(at, M, atol=1e-10)
+    assert_allclose(shift, b, atol=1e-12)
+    for first, last in ((0, 1), (1, 2)):
+        between = spline(np.linspace(knots[first], knots[last], 31))[0]
+        assert np.linalg.det(between).min() > 0
+        log_stretch, ends = affine.polar(between)[1], affine.polar(M[[first, last]])[1]
+        assert np.all(log_stretch >= ends.min(axis=0) - 1e-9)
+        assert np.all(log_stretch <= ends.max(axis=0) + 1e-9)
+
+
+def test_without_thickness_the_parameter_is_span():
+    parameter = Parameter(KNOTS)
+    q = np.linspace(0, 1, 11)
+    assert_allclose(parameter(q), q, atol=1e-15)
+    assert_allclose(parameter.knots, KNOTS, atol=1e-15)
+
+
+def test_with_thickness_shape_follows_it():
+    thickness = Distribution(np.array([0.0, 0.2, 0.5, 1.0]), np.array([1.0, 1.0, 0.4, 0.2]))
+    parameter = Parameter(np.array([0.0, 0.2, 0.6, 1.0]), thickness)
+    assert np.all(np.diff(parameter.knots) > 0)
+    assert_allclose(parameter(parameter.stations), parameter.knots, atol=1e-15)
+    eta = np.linspace(0.2, 1.0, 41)
+    assert_allclose(np.diff(parameter(eta)), -np.diff(thickness(eta)), atol=1e-14)
+
+
+def test_ripples_of_the_thickness_do_no_harm():
+    grid = np.linspace(0, 1, 41)
+    values = np.maximum(1.0 - 2.0 * grid, 0.241) + 1e-5 * (-1.0) ** np.arange(41)
+    parameter = Parameter(np.array([0.1, 0.3, 0.7, 1.0]), Distribution(grid, values))
+    q = parameter(np.linspace(0, 1, 2001))
+    assert np.all(np.isfinite(q))
+    assert q.min() == parameter.knots[0]
+    assert q.max() == parameter.knots[-1]
+    assert np.min(np.diff(q)) > -1e-4

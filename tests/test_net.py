@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from numpy.testing import assert_allclose
+
+from bladegen import net
+from bladegen.blade import Blade
+from bladegen.landmarks import landmark_parameters, landmarks
+from bladegen.readers import read
+from strategies import SEEDS, definitions, ellipse
+
+U = landmark_parameters(101)
+
+
+def cone(top: float) -> np.ndarray:
+    """Sections of an elliptic cone frustum of length 10, blunt by nothing."""
+    shape = landmarks(ellipse(0.5, 721), 101)
+    v = np.linspace(0, 1, 7)
+    scale = 1 + (top - 1) * v
+    flat = scale[:, None, None] * (shape - [0.5, 0.0])
+    return np.concatenate(
+        [flat[..., ::-1], np.broadcast_to(10 * v[:, None, None], (7, 101, 1))], axis=-1
+    )
+
+
+V = np.linspace(0, 1, 7)
+
+
+@given(SEEDS)
+def test_a_net_interpolates_its_sections(seed):
+    sections = cone(0.5) + 0.01 * np.random.default_rng(seed).normal(size=(7, 1, 3))
+    fitted = net.fit(sections, U, V)
+    assert_allclose(fitted.evaluate(U, V), sections, atol=1e-12)
+
+
+@given(SEEDS)
+def test_halves_are_the_whole(seed):
+    sections = cone(0.5) + 0.01 * np.random.default_rng(seed).normal(size=(7, 1, 3))
+    whole = net.fit(sections, U, V)
+    for half, u in zip(
+        whole.halves(), (np.linspace(0, 0.5, 9), np.linspace(0.5, 1, 9)), strict=True
+    ):
+        assert_allclose(half.evaluate(u, V), whole.evaluate(u, V), atol=1e-12)
+        assert len(half.u_knots) == len(half.poles) + 4
+    suction, pressure = whole.halves()
+    assert_allclose(suction.poles[-1], pressure.poles[0], atol=1e-14)
+
+
+@pytest.mark.parametrize("top", [1.0, 0.5])
+def test_volume_of_an_elliptic_cone(top):
+    fitted = net.fit(cone(top), U, V)
+    wanted = np.pi * 0.5 * 0.25 * 10 * (1 + top + top**2) / 3
+    assert_allclose(fitted.volume(), wanted, rtol=1e-5)
+
+
+def test_offsets_are_distances_along_the_normal():
+    fitted = net.fit(cone(1.0), U, V)
+    u, v = np.linspace(0.05, 0.95, 11), np.linspace(0.1, 0.9, 5)
+    points = fitted.evaluate(u, v)
+    assert_allclose(fitted.offsets(points, u, v), 0, atol=1e-15)
+    along = fitted.evaluate(u, v, nu=1)
+    slid = points + 1e-4 * along / np.linalg.norm(along, axis=-1, keepdims=True)
+    assert np.abs(fitted.offsets(slid, u, v)).max() < 1e-6
+    out = np.cross(along, fitted.evaluate(u, v, nv=1))
+    out /= np.linalg.norm(out, axis=-1, keepdims=True)
+    assert_allclose(fitted.offsets(points + 1e-3 * out, u, v), 1e-3, atol=1e-12)
+
+
+@settings(max_examples=5)
+@given(definitions())
+def test_fitted_nets_meet_their_tolerance(definition):
+    blade = Blade.from_definition(definition, landmarks=201)
+    said = []
+    fitted, deviation = net.fitted(blade, 1e-3, progress=said.append)
+    assert deviation.maximum < 1e-3
+    assert deviation.rms <= deviation.percentile99 <= deviation.maximum
+    assert len(fitted.v) <= net.MAX_SECTIONS
+    assert said
+    assert set(blade.eta) <= set(fitted.v)
+
+
+def test_a_finer_tolerance_takes_more_sections_and_gives_less_deviation():
+    blade = Blade.from_definition(read("nrel5mw"), landmarks=201)
+    coarse, fine = (net.fitted(blade, tolerance) for tolerance in (5e-3, 1e-3))
+    assert len(coarse[0].v) < len(fine[0].v)
+    assert coarse[1].maximum > fine[1].maximum
+    fixed, _ = net.fitted(blade, 1e-3, sections=50)
+    assert len(fixed.v) == 50

@@ -8,6 +8,7 @@ file by PyYAML's safe loaders, for the bundled blades and for a file of about 25
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import yaml
@@ -46,20 +47,19 @@ def with_polars(path: Path) -> str:
 def main() -> None:
     """Print one row a file."""
     fast = getattr(yaml, "CSafeLoader", None)
-    print(f"{'file':24}{'kB':>8}{'read':>10}{'CSafeLoader':>14}{'safe_load':>12}   [ms]")
+    heads = "".join(f"{head:>13}" for head in ("read [ms]", "CSafeLoader", "safe_load"))
+    print(f"{'file':24}{'kB':>8}", heads)
     with tempfile.TemporaryDirectory() as folder:
         large = Path(folder) / "nrel5mw_polars.yaml"
         paths = [Path(read(name).source) for name in bundled()]
         large.write_text(with_polars(paths[-1]), encoding="utf-8")
         for path in (*paths, large):
             content = path.read_bytes()
-            reading = best(lambda path=path: read(path))
-            parsing = [
-                "-" if loader is None else f"{best(lambda: yaml.load(content, loader), n):.0f}"
-                for loader, n in ((fast, REPEATS), (yaml.SafeLoader, 1))
-            ]
-            size = len(content) / 1e3
-            print(f"{path.name:24}{size:8.0f}{reading:10.1f}{parsing[0]:>14}{parsing[1]:>12}")
+            figures = [f"{best(partial(read, path)):.1f}"]
+            for loader, repeats in ((fast, REPEATS), (yaml.SafeLoader, 1)):
+                parse = partial(yaml.load, content, loader)
+                figures.append("-" if loader is None else f"{best(parse, repeats):.1f}")
+            print(f"{path.name:24}{len(content) / 1e3:8.0f}", "".join(f"{f:>13}" for f in figures))
 
 
 if __name__ == "__main__":

@@ -48,11 +48,12 @@ class MinimumThickness:
     thickness: float = 0.002
 
     def __call__(self, profiles: Array, chord: Array) -> Array:
-        half, middle, first = _halves(profiles)
+        half, middle = _halves(profiles)
         wanted = 0.5 * self.thickness / chord
-        missing = np.maximum(wanted**2 - first**2, 0.0)[:, None]
-        opened = np.sqrt(half**2 + _window(profiles) * missing)
-        return _joined(profiles, np.where(missing > 0, opened, half), middle)
+        missing = np.maximum(wanted**2 - half[:, 0, 1] ** 2, 0.0)[:, None]
+        opened = np.sqrt(half[..., 1] ** 2 + _window(middle) * missing)
+        half[..., 1] = np.where(missing > 0, opened, half[..., 1])
+        return _joined(profiles, half, middle)
 
 
 @dataclass(frozen=True)
@@ -60,30 +61,27 @@ class Sharp:
     """Trailing edges closed to a line, by a wedge that ends in the window."""
 
     def __call__(self, profiles: Array, chord: Array) -> Array:  # noqa: ARG002
-        half, middle, first = _halves(profiles)
-        return _joined(profiles, half - first[:, None] * _window(profiles), middle)
+        half, middle = _halves(profiles)
+        return _joined(profiles, half - half[:, :1] * _window(middle)[..., None], middle)
 
 
-def _halves(profiles: Array) -> tuple[Array, Array, Array]:
-    """Return half heights and mid heights of landmark pairs (k, m), and the half at the edge."""
+def _halves(profiles: Array) -> tuple[Array, Array]:
+    """Return half the way between opposite landmarks, and their middles, (k, m, 2) each."""
     m = profiles.shape[1] // 2
-    suction, pressure = profiles[:, :m, 1], profiles[:, : -m - 1 : -1, 1]
-    half = 0.5 * (suction - pressure)
-    return half, 0.5 * (suction + pressure), half[:, 0]
+    suction, pressure = profiles[:, :m], profiles[:, : -m - 1 : -1]
+    return 0.5 * (suction - pressure), 0.5 * (suction + pressure)
 
 
 def _joined(profiles: Array, half: Array, middle: Array) -> Array:
-    """Return the sections with new half heights about the same mid heights."""
+    """Return the sections with new halves about the same middles."""
     m = half.shape[1]
     result = profiles.copy()
-    result[:, :m, 1] = middle + half
-    result[:, : -m - 1 : -1, 1] = middle - half
+    result[:, :m], result[:, : -m - 1 : -1] = middle + half, middle - half
     return result
 
 
-def _window(profiles: Array) -> Array:
-    """Return 0 ahead and 1 behind the window, C2 between, for landmark pairs (k, m)."""
-    m = profiles.shape[1] // 2
-    x = 0.5 * (profiles[:, :m, 0] + profiles[:, : -m - 1 : -1, 0])
-    f = np.clip((x - WINDOW[0]) / (WINDOW[1] - WINDOW[0]), 0.0, 1.0)
-    return f**3 * (10.0 - 15.0 * f + 6.0 * f**2)
+def _window(middle: Array) -> Array:
+    """Return 0 ahead and 1 behind the window, C2 between, (k, m)."""
+    f = np.clip((middle[..., 0] - WINDOW[0]) / (WINDOW[1] - WINDOW[0]), 0.0, 1.0)
+    weight: Array = f**3 * (10.0 - 15.0 * f + 6.0 * f**2)
+    return weight

@@ -14,7 +14,7 @@ from bladegen.readers import windio1, windio2
 from bladegen.readers.document import Node, Notes
 from bladegen.readers.yaml_file import YamlError, load_yaml
 
-__all__ = ["FORMATS", "Format", "bundled", "read"]
+__all__ = ["FORMATS", "SUFFIXES", "Format", "bundled", "read"]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,93 @@
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bladegen.errors import ExportError
+from bladegen.files import folder, replacing, safe_stem
+
+
+def test_a_whole_file_replaces_the_old_one(tmp_path):
+    target = tmp_path / "a.txt"
+    target.write_text("old")
+    with replacing(target) as temporary:
+        assert temporary.parent == tmp_path
+        assert temporary.suffix == ".txt"
+        temporary.write_text("new")
+        assert target.read_text() == "old"
+    assert target.read_text() == "new"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
+    target = tmp_path / "a.txt"
+    target.write_text("old")
+    with contextlib.suppress(RuntimeError), replacing(target) as temporary:
+        temporary.write_text("half")
+        raise RuntimeError
+    assert target.read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_a_killed_writer_leaves_no_file_under_the_final_name(tmp_path):
+    target = tmp_path / "a.txt"
+    code = (
+        "import sys, time; from pathlib import Path; from bladegen.files import replacing\n"
+        "with replacing(Path(sys.argv[1])) as t:\n"
+        "    t.write_text('half'); print('ready', flush=True); time.sleep(60)"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code, str(target)], stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    assert not target.exists()
+
+
+def test_new_files_have_ordinary_permissions(tmp_path):
+    plain, ours = tmp_path / "plain", tmp_path / "ours"
+    plain.write_text("")
+    with replacing(ours) as temporary:
+        temporary.write_text("")
+    assert ours.stat().st_mode == plain.stat().st_mode
+
+
+def test_a_missing_folder_is_said_in_one_line(tmp_path):
+    nowhere = replacing(tmp_path / "nowhere" / "a.stl")
+    with pytest.raises(ExportError, match="cannot be written: No such file"):
+        nowhere.__enter__()
+
+
+def test_a_full_disk_is_said_in_one_line(tmp_path):
+    target = tmp_path / "a.stl"
+
+    def write():
+        with replacing(target):
+            raise OSError(28, os.strerror(28))
+
+    with pytest.raises(ExportError, match="No space left"):
+        write()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_folders_are_made_unless_a_file_stands_there(tmp_path):
+    assert folder(tmp_path / "a" / "b").is_dir()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ExportError, match="cannot be made a folder"):
+        folder(tmp_path / "file")
+
+
+@given(st.text(max_size=200))
+def test_names_never_become_paths(name):
+    stem = safe_stem(name)
+    assert 0 < len(stem) <= 80
+    assert "/" not in stem
+    assert "\\" not in stem
+    assert not stem.startswith((".", "-"))
+    assert stem.isascii()

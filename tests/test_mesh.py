@@ -1,0 +1,103 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from bladegen import mesh
+from bladegen.blade import Blade
+from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.errors import GeometryError
+from bladegen.landmarks import landmarks
+from bladegen.readers import bundled, read
+from strategies import SEEDS, definitions, ellipse
+
+
+def cylinder(n=201, k=5, thickness=0.5, gap=0):
+    """An elliptic cylinder of length 3; `gap` landmarks are cut off at either end."""
+    shape = landmarks(ellipse(thickness, 721), n + 2 * gap)
+    shape = shape[gap : len(shape) - gap]
+    z = np.linspace(0, 3, k)
+    flat = np.broadcast_to(shape[None, :, ::-1], (k, n, 2))
+    return np.concatenate([flat, np.broadcast_to(z[:, None, None], (k, n, 1))], axis=-1)
+
+
+def edges_are_shared_by_two(faces):
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    forward = {tuple(edge) for edge in edges.tolist()}
+    return len(forward) == len(edges) and all((b, a) in forward for a, b in forward)
+
+
+def euler_characteristic(made):
+    edges = 3 * len(made.faces) // 2
+    return len(made.vertices) - edges + len(made.faces)
+
+
+@given(definitions(), st.sampled_from([AsGiven(), Sharp(), MinimumThickness(0.01)]))
+def test_blades_of_any_edge_are_closed_and_face_outward(definition, edge):
+    blade = Blade.from_definition(definition, landmarks=51, trailing_edge=edge)
+    made = mesh.from_blade(blade, stations=30)
+    assert edges_are_shared_by_two(made.faces)
+    assert euler_characteristic(made) == 2
+    assert made.volume > 0
+    assert set(np.unique(made.faces)) == set(range(len(made.vertices)))
+
+
+@pytest.mark.parametrize("gap", [0, 3])
+def test_volume_and_area_of_a_cylinder(gap):
+    made = mesh.surface(cylinder(gap=gap, n=401))
+    assert edges_are_shared_by_two(made.faces)
+    if gap == 0:
+        assert_allclose(made.volume, np.pi * 0.5 / 4 * 3, rtol=2e-4)
+    fine = mesh.surface(cylinder(gap=4 * gap, n=1601))
+    assert_allclose(made.volume, fine.volume, rtol=5e-3)
+    assert_allclose(made.area, fine.area, rtol=5e-3)
+
+
+@given(SEEDS)
+def test_rigid_motions_change_nothing(seed):
+    rng = np.random.default_rng(seed)
+    turn = np.linalg.qr(rng.normal(size=(3, 3))).Q
+    turn[:, 0] *= np.linalg.det(turn)
+    sections = cylinder(n=51)
+    made, moved = mesh.surface(sections), mesh.surface(sections @ turn + rng.normal(size=3))
+    assert_allclose(moved.volume, made.volume, rtol=1e-12)
+    assert_allclose(moved.area, made.area, rtol=1e-12)
+
+
+def test_sharp_and_blunt_in_one_blade():
+    sections = cylinder(n=51, gap=2).copy()
+    sections[2:, -1] = sections[2:, 0]
+    made = mesh.surface(sections)
+    assert edges_are_shared_by_two(made.faces)
+    assert euler_characteristic(made) == 2
+    assert len(made.vertices) == 5 * 51 - 3
+
+
+def test_the_default_is_a_quarter_of_a_million_triangles():
+    blade = Blade.from_definition(read("iea15mw"))
+    assert 230_000 < len(mesh.from_blade(blade).faces) < 250_000
+
+
+@pytest.mark.parametrize("name", bundled())
+def test_trimesh_agrees(name):
+    made = mesh.from_blade(Blade.from_definition(read(name)), stations=100)
+    other = mesh.to_trimesh(made)
+    assert other.is_watertight
+    assert other.is_winding_consistent
+    assert_allclose(other.volume, made.volume, rtol=1e-9)
+    assert_allclose(other.area, made.area, rtol=1e-9)
+    assert_allclose(mesh.to_trimesh(made, scale=1e3).volume, 1e9 * made.volume, rtol=1e-9)
+
+
+def test_values_cannot_be_written():
+    made = mesh.surface(cylinder(n=51))
+    for array in (made.vertices, made.faces):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1
+
+
+@pytest.mark.parametrize("shape", [(1, 51, 3), (4, 50, 3), (4, 3, 3)])
+def test_grids_that_are_none_are_refused(shape):
+    with pytest.raises(GeometryError, match="allowed are at least 2 sections"):
+        mesh.surface(np.zeros(shape))

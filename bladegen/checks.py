@@ -104,7 +104,8 @@ def solid_figures(shape: Any, *, quick: bool = False) -> dict[str, Any]:
 
 def mesh_figures(triangles: Any) -> dict[str, Any]:
     """Measure a trimesh.Trimesh: closedness, orientation, volume, area, bounding box."""
-    extent = float(np.max(triangles.extents)) if len(triangles.vertices) else 0.0
+    own = mesh.TriangleMesh(triangles.vertices, triangles.faces)
+    extent = float(np.ptp(own.vertices, axis=0).max())
     corners = np.asarray(triangles.triangles)
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     height = np.divide(
@@ -116,12 +117,12 @@ def mesh_figures(triangles: Any) -> dict[str, Any]:
         "triangles": len(triangles.faces),
         "vertices": len(triangles.vertices),
         "watertight": watertight,
-        "outward": watertight and bool(triangles.is_winding_consistent and triangles.volume > 0),
+        "outward": watertight and bool(triangles.is_winding_consistent and own.volume > 0),
         "degenerate_triangles": degenerate,
         "no_degenerate_triangle": degenerate == 0,
-        "volume": float(triangles.volume),
-        "area": float(triangles.area),
-        "bounds": _bounds(np.asarray(triangles.bounds)) if extent else None,
+        "volume": own.volume,
+        "area": own.area,
+        "bounds": _bounds(np.asarray(triangles.bounds)),
     }
 
 

@@ -187,24 +187,22 @@ def preview(
     screenshot: Annotated[
         Path | None, typer.Option(help="Write a PNG instead of opening a window.")
     ] = None,
-    html: Annotated[Path | None, typer.Option(help="Write a page that turns in a browser.")] = None,
     landmarks: Landmarks = 401,
     path: PathOption = PathKind.geodesic,
     planes: PlanesOption = Planes.axis,
     trailing_edge: EdgeOption = "2mm",
 ) -> None:
-    """Look at a blade in a window, as a picture or as a web page."""
+    """Look at a blade in a window, or write a picture of it."""
     from bladegen import preview as view
     from bladegen.files import replacing
 
     made = _blade(blade, landmarks, path, planes, trailing_edge)
-    for target, write in ((screenshot, view.picture), (html, view.html)):
-        if target is not None:
-            with replacing(target) as temporary:
-                write(made, temporary)
-            typer.echo(f"wrote {target}")
-    if screenshot is None and html is None:
+    if screenshot is None:
         view.show(made)
+        return
+    with replacing(screenshot) as temporary:
+        view.picture(made, temporary)
+    typer.echo(f"wrote {screenshot}")
 
 
 @app.command()
@@ -266,8 +264,10 @@ def _progress() -> Iterator[Any]:
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+    console = Console(stderr=True)
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    quiet = not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
         task = bar.add_task("starting", total=None)
         yield lambda message: bar.update(task, description=message)
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from bladegen.arrays import Array, readonly
 from bladegen.blade import Blade
-from bladegen.errors import GeometryError
+from bladegen.errors import FileError, GeometryError
 
 __all__ = ["TriangleMesh", "from_blade", "surface", "to_trimesh"]
 
@@ -111,10 +111,22 @@ def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
 
 
 def read(path: Path) -> Any:
-    """Read a mesh file of any format that trimesh knows, as one trimesh.Trimesh."""
+    """Read a mesh file of any format that trimesh knows, as one trimesh.Trimesh.
+
+    Raises
+    ------
+    FileError
+        If trimesh cannot make triangles of it.
+    """
     import trimesh
 
-    return trimesh.load_mesh(path)
+    try:
+        triangles = trimesh.load_mesh(path)
+    except Exception as error:  # trimesh's loaders raise whatever their parsers do
+        raise FileError(str(path), [f"is no mesh that can be read: {error}"]) from None
+    if not len(triangles.faces):
+        raise FileError(str(path), ["holds no triangles"])
+    return triangles
 
 
 def _quads(points: Array, a: Indices, b: Indices, c: Indices, d: Indices) -> Indices:

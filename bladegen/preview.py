@@ -3,7 +3,7 @@
 Lengths are metres, blade frame.  pyvista is imported when first needed.
 """
 
-import ctypes.util
+import ctypes
 import os
 import sys
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ from bladegen.blade import Blade
 from bladegen.errors import RenderError
 from bladegen.mesh import TriangleMesh, from_blade
 
-__all__ = ["html", "picture", "require_renderer", "show", "write_vtp"]
+__all__ = ["picture", "require_renderer", "show", "write_vtp"]
 
 SIZE = (1920, 1080)
 SECTIONS = 240
@@ -87,15 +87,6 @@ def show(blade: Blade) -> None:
         raise RenderError("no window: there is no display here; use --screenshot FILE.png")
     plotter = _scene(blade, off_screen=False)
     plotter.show(title=f"bladegen - {blade.name}")
-
-
-def html(blade: Blade, path: Path) -> None:
-    """Write a page that turns the blade in a browser, with nothing else to load."""
-    require_renderer()
-    with _quietly():
-        plotter = _scene(blade, off_screen=True)
-        plotter.export_html(str(path))
-        plotter.close()
 
 
 def write_vtp(mesh: TriangleMesh, path: Path, *, scale: float = 1.0) -> None:

@@ -1,0 +1,69 @@
+import json
+
+import pytest
+
+import bladegen as bg
+from bladegen.build import build, report_path
+from bladegen.errors import ExportError, ToleranceError
+from bladegen.exporters import Options
+
+
+@pytest.fixture(scope="module")
+def blade():
+    return bg.Blade.from_definition(bg.read("nrel5mw"))
+
+
+@pytest.fixture(scope="module")
+def folder(blade, tmp_path_factory):
+    target = tmp_path_factory.mktemp("out") / "deep"
+    said = []
+    build(blade, target, progress=said.append)
+    assert said
+    return target
+
+
+def test_the_default_files_are_made(folder):
+    suffixes = {".step", ".stl", ".glb", ".png", ".json"}
+    assert {path.suffix for path in folder.iterdir()} == suffixes
+    assert all(path.name.startswith("nrel5mw.") for path in folder.iterdir())
+
+
+def test_the_report_meets_the_design(folder):
+    report = json.loads(report_path(folder, "nrel5mw").read_text())
+    figures, solid = report["figures"], report["solid"]
+    assert figures["stations_missed_by_chord"] < 1e-9
+    assert figures["chord_error_relative"] < 1e-9
+    assert figures["twist_error_deg"] < 1e-7
+    assert figures["thickness_error"] < 1e-9
+    assert solid["solids"] == 1
+    assert solid["valid"]
+    assert solid["closed"]
+    assert solid["deviation_mm"]["maximum"] < 0.3
+    assert solid["deviation_mm"]["rms"] < 0.03
+    assert abs(solid["volume_against_sections"]) < 1e-5
+    assert abs(solid["volume_change_on_reading"]) < 1e-6
+    for mesh in report["meshes"].values():
+        assert mesh["watertight"]
+        assert mesh["outward"]
+        assert mesh["degenerate_triangles"] == 0
+        assert abs(mesh["volume"] / solid["volume_m3"] - 1) < 1e-4
+    assert report["settings"]["landmarks"] == 401
+    assert report["versions"]["numpy"]
+    assert set(report["seconds"]) >= {"step", "stl", "glb", "png"}
+    sizes = {entry["name"]: entry["bytes"] for entry in report["files"]}
+    assert sizes == {name: (folder / name).stat().st_size for name in sizes}
+
+
+def test_a_missed_tolerance_is_said_and_the_rest_is_made(blade, tmp_path, monkeypatch):
+    monkeypatch.setattr("bladegen.net.MAX_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.net.FIRST_SECTIONS", 20)
+    with pytest.raises(ToleranceError):
+        build(blade, tmp_path, formats=["step", "stl"], options=Options(tolerance=1e-5))
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {"nrel5mw.out-of-tolerance.step", "nrel5mw.stl", "nrel5mw.report.json"}
+
+
+def test_an_unknown_format_is_refused_before_anything_is_made(blade, tmp_path):
+    with pytest.raises(ExportError, match=r"'\.doc', allowed are"):
+        build(blade, tmp_path, formats=["stl", "doc"])
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,112 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import bladegen as bg
+from bladegen import cad, exporters, mesh
+from bladegen.errors import ExportError, ToleranceError
+
+MESHES = [".stl", ".ply", ".glb", ".obj", ".3mf", ".vtp"]
+
+
+@pytest.fixture(scope="module")
+def blade():
+    return bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
+
+
+@pytest.fixture(scope="module")
+def made(blade):
+    return mesh.from_blade(blade, stations=60)
+
+
+def read(path):
+    """A mesh file as vertices and faces, VTP by pyvista and others by trimesh."""
+    if path.suffix == ".vtp":
+        import pyvista
+
+        data = pyvista.read(path)
+        return mesh.to_trimesh(mesh.TriangleMesh(data.points, data.regular_faces))
+    return mesh.read(path)
+
+
+@pytest.mark.parametrize("suffix", MESHES)
+def test_meshes_read_back_with_the_same_box_and_volume(blade, made, suffix, tmp_path):
+    path = bg.export(blade, tmp_path / f"blade{suffix}", stations=60)
+    again = read(path)
+    scale = 1000.0 if suffix == ".3mf" else 1.0
+    assert again.is_watertight
+    assert len(again.faces) == len(made.faces)
+    bounds = [made.vertices.min(axis=0), made.vertices.max(axis=0)]
+    assert_allclose(again.bounds, scale * np.array(bounds), atol=1e-4 * scale)
+    assert_allclose(again.volume, scale**3 * made.volume, rtol=1e-5)
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".ply", ".obj", ".vtp"])
+def test_millimetres_are_a_thousand_times_as_many(blade, suffix, tmp_path):
+    metre = read(bg.export(blade, tmp_path / f"m{suffix}", stations=20))
+    milli = read(bg.export(blade, tmp_path / f"mm{suffix}", stations=20, unit="mm"))
+    assert_allclose(milli.extents, 1000 * metre.extents, rtol=1e-5)
+
+
+def test_files_state_their_unit(blade, tmp_path):
+    stl = bg.export(blade, tmp_path / "a.stl", stations=20, unit="mm").read_bytes()
+    assert stl[:80].rstrip() == b"bladegen nrel5mw, unit: mm"
+    obj = bg.export(blade, tmp_path / "a.obj", stations=20).read_text()
+    assert obj.startswith("# bladegen nrel5mw, unit: m\n")
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".ply", ".glb", ".obj"])
+def test_the_same_blade_gives_the_same_bytes(blade, suffix, tmp_path):
+    first, second = (
+        bg.export(blade, tmp_path / f"{name}{suffix}", stations=20).read_bytes() for name in "ab"
+    )
+    assert first == second
+
+
+def test_step_by_suffix(blade, tmp_path):
+    path = bg.export(blade, tmp_path / "blade.stp", sections=40)
+    assert cad.is_valid(cad.read_step(path))
+
+
+def test_a_solid_that_misses_its_tolerance_is_kept_aside(blade, tmp_path, monkeypatch):
+    monkeypatch.setattr("bladegen.net.MAX_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.net.FIRST_SECTIONS", 20)
+    with pytest.raises(ToleranceError, match=r"mm off the blade .* allowed is 0.01 mm; kept as"):
+        bg.export(blade, tmp_path / "blade.step", tolerance=1e-5)
+    assert [p.name for p in tmp_path.iterdir()] == ["blade.out-of-tolerance.step"]
+
+
+def test_products_are_made_once(blade):
+    products = exporters.Products(blade, exporters.Options(stations=20))
+    assert products.mesh() is products.mesh()
+
+
+@pytest.mark.parametrize("name", ["blade.xyz", "blade", "blade.step.gz"])
+def test_unknown_suffixes_are_refused(blade, name, tmp_path):
+    with pytest.raises(ExportError, match=r"allowed are \.step, \.stp, \.stl"):
+        bg.export(blade, tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        ({"unit": "inch"}, "unit: got 'inch', allowed are m, mm"),
+        ({"tolerance": 0.0}, "tolerance: got 0 m"),
+        ({"tolerance": float("nan")}, "tolerance: got nan m"),
+    ],
+)
+def test_wrong_options_are_refused(blade, option, message, tmp_path):
+    with pytest.raises(ExportError, match=message):
+        bg.export(blade, tmp_path / "blade.stl", **option)
+
+
+def test_a_failing_writer_leaves_nothing(blade, tmp_path, monkeypatch):
+    def fail(products, path):
+        path.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setitem(exporters.FORMATS, ".stl", exporters.Format("broken", fail))
+    with pytest.raises(ExportError, match="No space left"):
+        bg.export(blade, tmp_path / "blade.stl")
+    assert list(tmp_path.iterdir()) == []

@@ -18,9 +18,9 @@ from bladegen.arrays import Array
 
 __all__ = ["SectionCurves", "SectionSplines"]
 
-PARAMETER_TOLERANCE = 1e-12  # of u; a maximum is off by its square
+PARAMETER_TOLERANCE = 1e-6  # of u, before the last step; a maximum is off by its square
 ITERATIONS = 60  # bisection alone needs 40
-WINDOW = 10  # landmarks either side of a guess in which the thickest place is sought
+WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,10 @@ class SectionSplines:
 
     def fit(self, points: Array) -> "SectionCurves":
         """Return the splines through landmarks (k, n, 2)."""
-        return SectionCurves(self.u, points, self._slopes @ points)
+        n, k = len(self.u), len(points)
+        columns = np.moveaxis(points, 1, 0).reshape(n, 2 * k)  # one product for all sections
+        slopes = np.moveaxis((self._slopes @ columns).reshape(n, k, 2), 0, 1)
+        return SectionCurves(self.u, points, slopes)
 
     def normalising(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array]:
         """Return the maps that bring sections to unit chord and relative thickness, exactly.
@@ -120,9 +123,9 @@ class SectionCurves:
     @cached_property
     def leading_edge(self) -> Array:
         """The leading edges, (k, 2)."""
-        away = self.points - self.trailing_edge[:, None]
-        far = np.argmax(np.sum(away * away, axis=-1), axis=1)
-        far = np.clip(far, 1, len(self.u) - 2)
+        first = len(self.u) // 4  # it is never in the rear quarters
+        away = self.points[:, first:-first] - self.trailing_edge[:, None]
+        far = np.argmax(np.einsum("kni,kni->kn", away, away), axis=1) + first
 
         def receding(u: Array) -> tuple[Array, Array]:
             p, d1, d2 = self.at(u)
@@ -159,35 +162,44 @@ class SectionCurves:
         for _ in range(middle):
             best = np.clip(best, reach + 1, middle - reach - 2)
             window = best[:, None] + np.arange(-reach, reach + 1)
-            heights = self._gap(self.u[window])[0]
+            heights = self._gap(self.u[window], 1.0 - self.u[window])[0]
             found = window[np.arange(len(best)), np.argmax(heights, axis=1)]
             moved = np.abs(found - best) == reach
             best = found
             if not moved.any():
                 break
 
+        height, opposite = np.empty(0), 1.0 - self.u[best]
+
         def rising(u: Array) -> tuple[Array, Array]:
-            return self._gap(u)[1:]
+            nonlocal height, opposite
+            height, slope, bend, opposite = self._gap(u, opposite)
+            return slope, bend
 
-        u = _root(rising, self.u[best - 1], self.u[best], self.u[best + 1])
-        return self._gap(u)[0]
+        _root(rising, self.u[best - 1], self.u[best], self.u[best + 1])
+        return height
 
-    def _gap(self, u: Array) -> tuple[Array, Array, Array]:
-        """Return the height between the sides at suction parameters `u`, and two derivatives."""
+    def _gap(self, u: Array, w: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the height between the sides at suction parameters `u`, and two derivatives.
+
+        `w` is a first guess of the pressure side's parameters at the same x; those found are
+        returned last.
+        """
         p, p1, p2 = self.at(u)
-        w = 1.0 - u
         for _ in range(8):  # Newton for the pressure-side point at the same x
             q, q1, q2 = self.at(w)
             step = (q[..., 0] - p[..., 0]) / q1[..., 0]
+            w = np.clip(w - step, 0.5, 1.0)
             if np.all(np.abs(step) <= PARAMETER_TOLERANCE):
                 break
-            w = np.clip(w - step, 0.5, 1.0)
+        q = q - q1 * step[..., None]  # the last step to first order: 1e-12 is left
         rate = p1[..., 0] / q1[..., 0]  # dw / du at equal x
         bend = (p2[..., 0] - q2[..., 0] * rate**2) / q1[..., 0]
         return (
             p[..., 1] - q[..., 1],
             p1[..., 1] - q1[..., 1] * rate,
             p2[..., 1] - q2[..., 1] * rate**2 - q1[..., 1] * bend,
+            w,
         )
 
 

@@ -4,6 +4,8 @@ For each: time, validity, poles or faces, and how far the solid is from the blad
 landmarks that were not used (OCCT's distance, at a few dozen points, for both alike).
 """
 
+import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -15,6 +17,7 @@ from bladegen import cad, properties
 
 LOFT_SECTIONS, LOFT_LANDMARKS = 40, 101
 POINTS = 12
+PATIENCE = 90  # s
 
 
 def distance_mm(blade: bg.Blade, shape: object) -> float:
@@ -69,15 +72,37 @@ def main() -> None:
             f"{1e3 * solid.deviation.rms:6.4f}  {distance_mm(blade, solid.shape):13.3f}  "
             f"{solid.net.volume() / wanted - 1:+.1e}  {size / 1e6:.1f} MB"
         )
-        start = time.perf_counter()
-        shape = lofted(blade)
-        spent = time.perf_counter() - start
-        off = cad.volume(shape) * 1e-9 / wanted - 1
-        print(
-            f"{name:9s} loft   {LOFT_SECTIONS:8d}  {spent:5.2f}  {cad.is_valid(shape)!s:5s}  "
-            f"{'':12s}  {'':6s}  {distance_mm(blade, shape):13.3f}  {off:+.1e}"
+        print_loft_or_failure(name)
+
+
+def print_loft(name: str) -> None:
+    """Loft a blade by OCCT and print its row."""
+    blade = bg.Blade.from_definition(bg.read(name))
+    start = time.perf_counter()
+    shape = lofted(blade)
+    spent = time.perf_counter() - start
+    off = cad.volume(shape) * 1e-9 / properties.volume(blade) - 1
+    print(
+        f"{name:9s} loft   {LOFT_SECTIONS:8d}  {spent:5.2f}  {cad.is_valid(shape)!s:5s}  "
+        f"{'':12s}  {'':6s}  {distance_mm(blade, shape):13.3f}  {off:+.1e}"
+    )
+
+
+def print_loft_or_failure(name: str) -> None:
+    """Loft in a process of its own, since OCCT's loft may not come back."""
+    try:
+        done = subprocess.run(
+            [sys.executable, __file__, name], timeout=PATIENCE, check=True, capture_output=True
         )
+        print(done.stdout.decode(), end="", flush=True)
+    except subprocess.TimeoutExpired:
+        print(f"{name:9s} loft   {LOFT_SECTIONS:8d}  not done after {PATIENCE} s", flush=True)
+    except subprocess.CalledProcessError as error:
+        print(f"{name:9s} loft   {LOFT_SECTIONS:8d}  failed: exit {error.returncode}", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    if len(sys.argv) > 1:
+        print_loft(sys.argv[1])
+    else:
+        main()

@@ -23,10 +23,13 @@ __all__ = ["picture", "require_renderer", "show", "write_vtp"]
 SIZE = (1920, 1080)
 SECTIONS = 240
 BACKGROUND = "white"
-SURFACE = "#c9d3dc"
+SURFACE = "#b9c6d2"
 INK = "#22303c"
 STATION = "#d55e00"  # vermillion of the Okabe-Ito palette, told apart by everyone
 AXIS = "#0072b2"
+VIEW, STRIP = 0.54, 0.23  # shares of a figure's height
+VIEW_ANGLE = 30.0  # degrees, VTK's own
+FILLED = 0.92  # of a view's width or height
 EDGE_ANGLE = 40.0  # degrees between facets that are shaded as an edge
 BLANK = 2.0  # grey levels of standard deviation below which a picture is empty
 NO_RENDERER = (
@@ -108,7 +111,7 @@ def _scene(blade: Blade, *, off_screen: bool) -> Any:
     _dress(plotter)
     _add_blade(plotter, blade)
     _add_axes(plotter)
-    plotter.camera_position = _perspective(blade)
+    plotter.camera_position = _perspective(blade, SIZE[0] / SIZE[1])
     return plotter
 
 
@@ -120,31 +123,31 @@ def _figure(blade: Blade, size: tuple[int, int]) -> Any:
         off_screen=True,
         window_size=list(size),
         shape=(3, 1),
-        row_weights=[0.54, 0.23, 0.23],
+        row_weights=[VIEW, STRIP, STRIP],
         border=False,
     )
     plotter.subplot(0, 0)
     _dress(plotter)
     _add_blade(plotter, blade)
-    plotter.camera_position = _perspective(blade)
-    plotter.camera.zoom(1.0)
+    plotter.camera_position = _perspective(blade, size[0] / (VIEW * size[1]))
     plotter.add_text(
         _caption(blade),
-        position=(24, int(0.54 * size[1]) - 84),
+        position=(24, int(VIEW * size[1]) - 84),
         font_size=13,
         color=INK,
         viewport=False,
     )
 
     for row, (title, view) in enumerate(
-        (("suction side: chord over span", "planform"), ("from the trailing edge", "side")), start=1
+        (("planform, suction side", "planform"), ("edgewise, trailing edge", "side")), start=1
     ):
         plotter.subplot(row, 0)
         _dress(plotter)
         _add_blade(plotter, blade)
         _strip_view(plotter, blade, view, size)
-        _add_ruler(plotter, blade, view)
-        plotter.add_text(title, position=(24, int(0.23 * size[1]) - 40), font_size=10, color=INK)
+        plotter.add_text(
+            title, position=(int(0.8 * size[0]), int(STRIP * size[1]) - 48), font_size=10, color=INK
+        )
     return plotter
 
 
@@ -155,11 +158,11 @@ def _dress(plotter: Any) -> None:
     plotter.set_background(BACKGROUND)
     plotter.enable_anti_aliasing("ssaa")
     plotter.remove_all_lights()
-    for position, strength in (((-0.4, 0.5, 1.0), 0.65), ((1.0, 0.2, 0.3), 0.4)):
+    for position, strength in (((-0.4, 0.5, 1.0), 0.55), ((1.0, 0.2, 0.3), 0.35)):
         light = pv.Light(light_type="camera light", intensity=strength)
         light.position = position
         plotter.add_light(light)
-    plotter.add_light(pv.Light(light_type="headlight", intensity=0.25))
+    plotter.add_light(pv.Light(light_type="headlight", intensity=0.22))
 
 
 def _add_blade(plotter: Any, blade: Blade) -> None:
@@ -203,50 +206,57 @@ def _add_axes(plotter: Any) -> None:
     )
 
 
-def _perspective(blade: Blade) -> list[Array]:
-    """Look from the root along the blade, at its suction side."""
-    length = blade.length
-    focus = np.array([0.0, 0.02 * length, 0.43 * length])
-    eye = np.array([0.38 * length, 0.22 * length, 0.02 * length])
-    return [eye, focus, np.array([0.5, -1.0, 0.0])]
+def _perspective(blade: Blade, aspect: float) -> list[Array]:
+    """Look at the suction side from the root's end, as near as the whole blade can be seen."""
+    points = blade.sections(np.linspace(0.0, 1.0, 60))[:, ::10].reshape(-1, 3)
+    towards, up = np.array([0.8, 0.34, -0.5]), np.array([0.35, -1.0, 0.0])
+    towards = towards / np.linalg.norm(towards)
+    right = np.cross(up, towards)
+    right = right / np.linalg.norm(right)
+    axes = np.stack([right, np.cross(towards, right), towards], axis=1)
+    reach = np.tan(np.radians(VIEW_ANGLE / 2.0)) * FILLED * np.array([aspect, 1.0])
+    focus, distance = points.mean(axis=0), 0.0
+    for _ in range(12):  # centring changes the distance, and the other way round
+        seen = (points - focus) @ axes
+        distance = float(np.max(seen[:, 2:] + np.abs(seen[:, :2]) / reach))
+        angles = seen[:, :2] / (distance - seen[:, 2:])
+        focus = focus + axes[:, :2] @ (0.5 * distance * (angles.max(axis=0) + angles.min(axis=0)))
+    return [focus + distance * towards, focus, up]
 
 
 def _strip_view(plotter: Any, blade: Blade, view: str, size: tuple[int, int]) -> None:
-    """Look at the blade at right angles, root at the left, the whole length in the strip."""
+    """Look at the blade at right angles, root at the left, over a ruler in metres."""
     length = blade.length
-    middle = np.array([0.0, 0.0, 0.5 * length])
-    if view == "planform":
-        position, up = np.array([length, 0.0, middle[2]]), (0.0, -1.0, 0.0)
-    else:
-        position, up = np.array([0.0, length, middle[2]]), (1.0, 0.0, 0.0)
-    plotter.camera_position = [position, middle, up]
+    across, away = (1, 0) if view == "planform" else (0, 1)
+    down = 1.0 if view == "planform" else -1.0  # y points down in one view, x up in the other
+    seen = down * blade.sections(np.linspace(0.0, 1.0, 50))[..., across]
+    base = float(seen.max()) + 0.012 * length
+    middle = np.zeros(3)
+    middle[across] = down * 0.5 * (float(seen.min()) - 0.012 * length + base + 0.03 * length)
+    middle[2] = 0.5 * length
+    eye, up = middle.copy(), np.zeros(3)
+    eye[away] += length
+    up[across] = -down
+    plotter.camera_position = [eye, middle, up]
     plotter.enable_parallel_projection()
-    width_over_height = size[0] / (0.23 * size[1])
+    width_over_height = size[0] / (STRIP * size[1])
     plotter.camera.parallel_scale = 0.5 * 1.08 * length / width_over_height
+    _add_ruler(plotter, length, across, down * base, down)
 
 
-def _add_ruler(plotter: Any, blade: Blade, view: str) -> None:
-    """Add a scale in metres below the blade, ticks at round lengths."""
+def _add_ruler(plotter: Any, length: float, across: int, base: float, down: float) -> None:
+    """Add a scale along z with ticks at round lengths, at `base` on the axis `across`."""
     import pyvista as pv
 
-    length = blade.length
-    step = _round_step(length)
-    marks = np.arange(0.0, length + 0.02 * step, step)
-    sections = blade.sections(np.linspace(0.0, 1.0, 50))
-    across = 1 if view == "planform" else 0
-    low = sections[..., across].max() if view == "planform" else sections[..., across].min()
-    sign = 1.0 if view == "planform" else -1.0
-    base = low + sign * 0.012 * length
-    ends = np.zeros((2, 3))
-    ends[:, across], ends[1, 2] = base, length
-    plotter.add_mesh(pv.Line(ends[0], ends[1]), color=INK, line_width=2)
-    labels = np.zeros((len(marks), 3))
-    labels[:, 2], labels[:, across] = marks, base + sign * 0.016 * length
-    for mark in marks:
-        tick = np.zeros((2, 3))
-        tick[:, 2] = mark
-        tick[:, across] = base, base + sign * 0.006 * length
-        plotter.add_mesh(pv.Line(tick[0], tick[1]), color=INK, line_width=2)
+    marks = np.arange(0.0, length + 1e-9, _round_step(length))
+    ticks = np.zeros((len(marks) + 1, 2, 3))
+    ticks[:-1, :, 2] = marks[:, None]
+    ticks[:-1, :, across] = base, base + down * 0.006 * length
+    ticks[-1, :, 2], ticks[-1, :, across] = (0.0, length), base
+    segments = pv.line_segments_from_points(ticks.reshape(-1, 3))
+    plotter.add_mesh(segments, color=INK, line_width=2)
+    labels = ticks[:-1, 1].copy()
+    labels[:, across] += down * 0.011 * length
     plotter.add_point_labels(
         labels,
         [f"{mark:g} m" for mark in marks],

@@ -22,8 +22,10 @@ if TYPE_CHECKING:
         Rotor,
         Station,
     )
+    from bladegen.deformation import Coordinates, Window
     from bladegen.errors import BladegenError, Finding
     from bladegen.exporters import export
+    from bladegen.pga import ShapeSpace
     from bladegen.readers import bundled, read
 
 __version__ = "0.1.0"
@@ -33,11 +35,14 @@ _HOME = {
     "Blade": "blade",
     "BladeDefinition": "definition",
     "BladegenError": "errors",
+    "Coordinates": "deformation",
     "Distribution": "definition",
     "Finding": "errors",
     "ReferenceAxis": "definition",
     "Rotor": "definition",
+    "ShapeSpace": "pga",
     "Station": "definition",
+    "Window": "deformation",
     "bundled": "readers",
     "export": "exporters",
     "read": "readers",
@@ -48,11 +53,14 @@ __all__ = [
     "Blade",
     "BladeDefinition",
     "BladegenError",
+    "Coordinates",
     "Distribution",
     "Finding",
     "ReferenceAxis",
     "Rotor",
+    "ShapeSpace",
     "Station",
+    "Window",
     "__version__",
     "bundled",
     "export",

@@ -5,10 +5,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Array", "ArrayLike", "Mask", "readonly"]
+__all__ = ["Array", "ArrayLike", "Indices", "Mask", "readonly"]
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+Indices = npt.NDArray[np.int64]
 ArrayLike = npt.ArrayLike
 
 

@@ -7,6 +7,7 @@ value; everything about it follows from its fields.  Metres and radians, blade f
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from bladegen import affine
 from bladegen.arrays import Array, ArrayLike, readonly
 from bladegen.crowding import Crowding
 from bladegen.definition import BladeDefinition
+from bladegen.deformation import Deformation, Thickening
 from bladegen.edges import MinimumThickness, TrailingEdge
 from bladegen.errors import DefinitionError, Finding
 from bladegen.interpolation import (
@@ -25,6 +27,7 @@ from bladegen.interpolation import (
     spline_path,
 )
 from bladegen.landmarks import Contour, Spacing, clustered, contour, landmark_parameters
+from bladegen.perturbation import Perturbable
 from bladegen.planform import Planform, SectionPlanes, normal_to_axis
 from bladegen.remarks import disagreeing, opened
 from bladegen.sections import SectionSplines
@@ -39,7 +42,7 @@ SAME_SHAPE = 1e-10  # of the largest singular value; stations may repeat an airf
 
 
 @dataclass(frozen=True, eq=False)
-class Blade:
+class Blade(Perturbable):
     """A blade as a function of span.
 
     Parameters
@@ -50,10 +53,10 @@ class Blade:
         Landmark parameters, 0 at the suction side's trailing edge, 0.5 at the leading edge.
     eta : (s,) array
         Span fractions of the stations.
-    points : (s, n, 2) array
-        The stations' shapes: orthonormal, centred representatives on Gr(n, 2).
+    representatives : (s, n, 2) array
+        The stations' airfoils as points of Gr(n, 2): orthonormal, centred bases.
     M, b : (s, 2, 2), (s, 2) arrays
-        Their affine maps, ``airfoil = points @ M + b``.
+        Their affine maps, ``airfoil = representatives @ M + b``.
     path : callable
         How stations are joined: `interpolation.geodesic_path` or `spline_path`.
     planes : callable
@@ -65,12 +68,18 @@ class Blade:
         landmarks.
     findings : tuple of Finding
         What was mended or looks odd.
+    deformations : tuple of Deformation
+        Applied to the shapes, one after the other (`perturbed`).
+    thickenings : tuple of callable
+        Factors of the relative thickness over span (`perturbed`).
+    changes : tuple of dict
+        What was asked of `perturbed`, once a call.
     """
 
     definition: BladeDefinition
     u: Array
     eta: Array
-    points: Array
+    representatives: Array
     M: Array
     b: Array
     path: PathMaker = geodesic_path
@@ -78,9 +87,12 @@ class Blade:
     trailing_edge: TrailingEdge = MINIMUM_EDGE
     contours: tuple[Contour, ...] | None = None
     findings: tuple[Finding, ...] = ()
+    deformations: tuple[Deformation, ...] = ()
+    thickenings: tuple[Thickening, ...] = ()
+    changes: tuple[dict[str, Any], ...] = ()
 
     def __post_init__(self) -> None:
-        for field in ("u", "eta", "points", "M", "b"):
+        for field in ("u", "eta", "representatives", "M", "b"):
             object.__setattr__(self, field, readonly(getattr(self, field)))
 
     @classmethod
@@ -128,7 +140,7 @@ class Blade:
             definition=definition,
             u=u,
             eta=np.array([station.eta for station in definition.stations]),
-            points=X,
+            representatives=X,
             M=M,
             b=b,
             path=PATHS[path],
@@ -183,7 +195,7 @@ class Blade:
         knots = self.parameter.knots
         angle, _ = affine.polar(self.M[-1:])
         turn = affine.from_polar(angle, np.zeros((1, 2, 2)))
-        path, M = self.path(knots, self.points @ turn, turn.mT @ self.M)
+        path, M = self.path(knots, self.representatives @ turn, turn.mT @ self.M)
         return path, SectionSpline(knots, M, self.b)
 
     @property
@@ -210,16 +222,61 @@ class Blade:
         """
         spans = _spans(eta)
         flat = spans.reshape(-1)
-        path, spline = self._joined
-        q = self.parameter(flat)
-        X, (M, b) = path(q), spline(q)
+        plain, X, M, b = self._shapes(flat)
         points = affine.restore(X, M, b)
-        thickness = self.definition.relative_thickness
-        A, c = self._splines.normalising(points, None if thickness is None else thickness(flat))
+        A, c = self._splines.normalising(points, self._target(flat, plain, M, b))
         if u is not None:
-            points = affine.restore(self._between(u) @ X, M, b)
+            finer = self._between(u) @ plain
+            if self.deformations:
+                finer = finer + self._splines.values(u) @ (X - plain)
+            points = affine.restore(finer, M, b)
         result = affine.restore(points, A, c)
         return result.reshape(*spans.shape, *result.shape[1:])
+
+    def wanted_thickness(self, eta: Array) -> Array | None:
+        """Return the relative thickness that rules at span fractions (k,), None if none does."""
+        plain, _, M, b = self._shapes(eta)
+        return self._target(eta, plain, M, b)
+
+    def relative_thickness(self, eta: ArrayLike) -> Array:
+        """Return the relative thickness of the sections at `eta`."""
+        spans = _spans(eta)
+        profiles = self.profiles(spans.reshape(-1))
+        return self._splines.fit(profiles).relative_thickness.reshape(spans.shape)
+
+    @property
+    def points(self) -> Array:
+        """The stations' shapes as points of Gr(n, 2), deformations included, (s, n, 2)."""
+        X = self.representatives
+        for deformation in self.deformations:
+            X = deformation(X, self.eta)
+        return X
+
+    def _shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the path's points, the same deformed, and their affine maps M and b."""
+        path, spline = self._joined
+        q = self.parameter(eta)
+        plain, (M, b) = path(q), spline(q)
+        X = plain
+        for deformation in self.deformations:
+            X = deformation(X, eta)
+        return plain, X, M, b
+
+    def _target(self, eta: Array, plain: Array, M: Array, b: Array) -> Array | None:
+        """Return the relative thickness to reach; None if nothing rules it.
+
+        Without a distribution, a perturbed blade keeps the thickness it had.
+        """
+        thickness = self.definition.relative_thickness
+        if thickness is not None:
+            target = thickness(eta)
+        elif self.deformations or self.thickenings:
+            target = self._splines.fit(affine.restore(plain, M, b)).relative_thickness
+        else:
+            return None
+        for thickening in self.thickenings:
+            target = target * thickening(eta)
+        return target
 
     def sections(self, eta: ArrayLike, u: Array | None = None) -> Array:
         """Return sections in space, with finished trailing edges.
@@ -252,8 +309,11 @@ class Blade:
             return SectionSplines(self.u).values(u)
         airfoils = np.stack([contour.landmarks(u) for contour in self.contours])
         finer = (airfoils - self.b[:, None]) @ np.linalg.inv(self.M)
-        columns = np.concatenate([*self.points], axis=1)
+        columns = np.concatenate([*self.representatives], axis=1)
         return np.concatenate([*finer], axis=1) @ np.linalg.pinv(columns, rcond=SAME_SHAPE)
+
+    def _with(self, **changes: Any) -> "Blade":
+        return replace(self, **changes)
 
     def with_trailing_edge(self, trailing_edge: TrailingEdge) -> "Blade":
         """Return the blade with another finish of its trailing edges."""

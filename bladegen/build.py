@@ -73,6 +73,7 @@ def build(
         "bladegen": __version__,
         "versions": {"python": platform.python_version(), **_versions()},
         "settings": _settings(blade, options),
+        "changes": list(blade.changes),
     }
     progress("measuring the blade")
     with _timed(seconds, "measuring the blade"):
@@ -111,7 +112,7 @@ def report_path(target: Path, name: str) -> Path:
 
 def _solid(products: exporters.Products, path: Path, wanted: float) -> dict[str, Any]:
     """Measure a STEP file as it lies on the disk, against the solid and the blade."""
-    solid = products.solid()
+    solid = products.solid
     again = checks.solid_figures(cad.read_step(path), quick=True)
     before = cad.volume(solid.shape, cad.COARSE_VOLUME) / cad.MILLIMETRES**3
     volume = solid.net.volume()

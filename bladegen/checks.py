@@ -131,7 +131,7 @@ def check_blade(blade: Blade) -> Check:
     eta = np.unique(np.concatenate([np.linspace(0.0, 1.0, SPANS), blade.eta]))
     profiles = blade.profiles(eta)
     curves = SectionSplines(blade.u).fit(profiles)
-    thickness = blade.definition.relative_thickness
+    thickness = blade.wanted_thickness(eta)
     figures: dict[str, Any] = {
         "stations": len(blade.eta),
         "landmarks": len(blade.u),
@@ -142,7 +142,7 @@ def check_blade(blade: Blade) -> Check:
         "twist_error_deg": float(np.degrees(np.abs(_twist_error(blade, eta, profiles)).max())),
         "thickness_error": None
         if thickness is None
-        else float(np.abs(curves.relative_thickness - thickness(eta)).max()),
+        else float(np.abs(curves.relative_thickness - thickness).max()),
         "findings": [str(finding) for finding in blade.findings],
     }
     finished = blade.trailing_edge(profiles, blade.chord(eta))
@@ -158,7 +158,7 @@ def _missed(blade: Blade) -> Array:
     splines = SectionSplines(blade.u)
     airfoils = affine.restore(blade.points, blade.M, blade.b)
     profiles = blade.profiles(blade.eta)
-    if blade.definition.relative_thickness is None:
+    if blade.wanted_thickness(blade.eta) is None:
         wanted = None
     else:
         wanted = splines.fit(profiles).relative_thickness

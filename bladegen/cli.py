@@ -2,16 +2,21 @@
 
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from bladegen import __version__
+from bladegen import __version__, cli_space
 from bladegen.errors import BladegenError
+from bladegen.terminal import (
+    print_figures,
+    print_findings,
+    print_summary,
+    print_table,
+    progress_bar,
+)
 
 __all__ = ["app", "main"]
 
@@ -54,6 +59,14 @@ class Planes(StrEnum):
 
 BladeName = Annotated[
     str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a windIO file.")
+]
+app.add_typer(cli_space.app, name="space")
+Formats = Annotated[
+    list[str] | None,
+    typer.Option("--format", help="step stl glb png ply obj 3mf vtp; may be repeated."),
+]
+Tolerance = Annotated[
+    str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
@@ -111,7 +124,7 @@ def list_blades() -> None:
                 str(len({station.airfoil.name for station in definition.stations})),
             ]
         )
-    _table(["name", "blade", "length", "airfoils"], rows)
+    print_table(["name", "blade", "length", "airfoils"], rows)
 
 
 @app.command()
@@ -125,41 +138,33 @@ def info(blade: BladeName, as_json: Json = False) -> None:
     if as_json:
         typer.echo(json.dumps(figures, indent=2))
         return
-    _figures(figures["blade"], {k: v for k, v in figures.items() if not isinstance(v, list)})
-    _table(
+    print_figures(figures["blade"], {k: v for k, v in figures.items() if not isinstance(v, list)})
+    print_table(
         ["eta", "z m", "airfoil", "chord m", "twist deg", "thickness"],
         station_rows(definition),
         title="stations",
     )
-    _findings(figures["findings"])
+    print_findings(figures["findings"])
 
 
 @app.command()
 def build(
     blade: BladeName,
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
-    formats: Annotated[
-        list[str] | None,
-        typer.Option("--format", help="step stl glb png ply obj 3mf vtp; may be repeated."),
-    ] = None,
+    formats: Formats = None,
     landmarks: Landmarks = 401,
     stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300,
     path: PathOption = PathKind.geodesic,
     planes: PlanesOption = Planes.axis,
-    tolerance: Annotated[
-        str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
-    ] = "0.3mm",
+    tolerance: Tolerance = "0.3mm",
     trailing_edge: EdgeOption = "2mm",
     tip: Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")] = TipKind.flat,
     unit: Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ and VTP files.")] = Unit.m,
 ) -> None:
     """Build a blade: a STEP solid, meshes, a picture and a report."""
     from bladegen import cad
-    from bladegen.build import DEFAULT_FORMATS
-    from bladegen.build import build as build_files
-    from bladegen.errors import ToleranceError
     from bladegen.exporters import Options
-    from bladegen.lengths import metres
+    from bladegen.texts import metres
 
     made = _blade(blade, landmarks, path, planes, trailing_edge)
     options = Options(
@@ -168,17 +173,76 @@ def build(
         tip={"flat": cad.flat_tip, "round": cad.round_tip}[tip],
         unit=unit,
     )
-    miss = None
-    with _progress() as progress:
-        try:
-            build_files(
-                made, output, formats=formats or DEFAULT_FORMATS, options=options, progress=progress
-            )
-        except ToleranceError as error:
-            miss = error
-    _summary(output, made.name)
-    if miss is not None:
-        raise miss
+    _build(made, output, formats, options)
+
+
+@app.command()
+def perturb(
+    blade: BladeName,
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
+    pga: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="t1,t2,...[@ETA]",
+            help="Coordinates along the modes [rad]; with @ETA repeated, knots over span.",
+        ),
+    ] = None,
+    space: Annotated[
+        Path | None, typer.Option(help="A space made by `space build`; the bundled one if not.")
+    ] = None,
+    thickness: Annotated[float, typer.Option(help="Thickness times this; 1 changes nothing.")] = 1,
+    camber: Annotated[
+        float, typer.Option(help="diag(2 - s, s), chord against thickness; 1 changes nothing.")
+    ] = 1,
+    chord: Annotated[
+        float, typer.Option(help="Chord times this at the same thickness in metres; 1 is none.")
+    ] = 1,
+    twist: Annotated[float, typer.Option(help="Added to the twist [deg]; 0 changes nothing.")] = 0,
+    chord_scale: Annotated[float, typer.Option(help="Sections times this; 1 is none.")] = 1,
+    twist_scale: Annotated[float, typer.Option(help="Twist times this; 1 is none.")] = 1,
+    prebend_scale: Annotated[float, typer.Option(help="Prebend times this; 1 is none.")] = 1,
+    window: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FROM,TO", help="Where the changes fade in; past round roots if not given."
+        ),
+    ] = None,
+    allow_extrapolation: Annotated[
+        bool, typer.Option("--allow-extrapolation", help="Go beyond the space's data.")
+    ] = False,
+    name: Annotated[str | None, typer.Option(help="Of the perturbed blade and its files.")] = None,
+    formats: Formats = None,
+    landmarks: Landmarks = 401,
+    path: PathOption = PathKind.geodesic,
+    planes: PlanesOption = Planes.axis,
+    tolerance: Tolerance = "0.3mm",
+    trailing_edge: EdgeOption = "2mm",
+) -> None:
+    """Perturb a blade consistently and build it."""
+    from math import radians
+
+    from bladegen.exporters import Options
+    from bladegen.pga import ShapeSpace
+    from bladegen.texts import coordinates, metres, span_window
+
+    t = coordinates(pga or [])
+    options = Options(tolerance=metres(tolerance, "tolerance"))
+    made = _blade(blade, landmarks, path, planes, trailing_edge)
+    variant = made.perturbed(
+        None if t is None else ShapeSpace.load(space) if space else ShapeSpace.bundled(),
+        () if t is None else t,
+        thickness=thickness,
+        camber=camber,
+        chord=chord,
+        twist=radians(twist),
+        chord_scale=chord_scale,
+        twist_scale=twist_scale,
+        prebend_scale=prebend_scale,
+        window=None if window is None else span_window(window),
+        allow_extrapolation=allow_extrapolation,
+        name=name or f"{made.name}-perturbed",
+    )
+    _build(variant, output, formats, options)
 
 
 @app.command()
@@ -234,8 +298,8 @@ def check(
         )
     else:
         figures = {k: v for k, v in result.figures.items() if k != "findings"}
-        _figures(f"{result.source} ({result.kind})", figures)
-        _findings(result.figures.get("findings", []))
+        print_figures(f"{result.source} ({result.kind})", figures)
+        print_findings(result.figures.get("findings", []))
     if result.problems:
         raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
 
@@ -244,9 +308,9 @@ def _blade(source: str, landmarks: int, path: str, planes: Planes, edge: str) ->
     """Read and build a blade as the options say."""
     from bladegen.blade import Blade
     from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
-    from bladegen.lengths import metres
     from bladegen.planform import normal_to_axis, normal_to_z
     from bladegen.readers import read
+    from bladegen.texts import metres
 
     named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
     return Blade.from_definition(
@@ -258,52 +322,24 @@ def _blade(source: str, landmarks: int, path: str, planes: Planes, edge: str) ->
     )
 
 
-@contextmanager
-def _progress() -> Iterator[Any]:
-    """Show what is being done and for how long, on a terminal."""
-    from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+def _build(blade: Any, output: Path, formats: list[str] | None, options: Any) -> None:
+    """Build a blade's files and print what was made, a missed tolerance included."""
+    from bladegen.build import DEFAULT_FORMATS
+    from bladegen.build import build as build_files
+    from bladegen.errors import ToleranceError
 
-    console = Console(stderr=True)
-    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    quiet = not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
-        task = bar.add_task("starting", total=None)
-        yield lambda message: bar.update(task, description=message)
-
-
-def _summary(folder: Path, name: str) -> None:
-    """Print a report's main figures and the files."""
-    from bladegen.build import report_path
-    from bladegen.tables import report_rows
-
-    path = report_path(folder, name)
-    report = json.loads(path.read_text(encoding="utf-8"))
-    _table(["figure", "measured"], report_rows(report), title=report["blade"])
-    rows = [[str(folder / f["name"]), f"{f['bytes'] / 1e6:.1f} MB"] for f in report["files"]]
-    rows.append([str(path), "all figures"])
-    _table(["file", "size"], rows)
-    _findings(report["figures"]["findings"])
-
-
-def _figures(title: str, figures: dict[str, Any]) -> None:
-    from bladegen.tables import shown
-
-    rows = [[key.replace("_", " "), shown(value)] for key, value in figures.items()]
-    _table(["figure", "value"], rows, title=title)
-
-
-def _table(columns: list[str], rows: list[list[str]], title: str | None = None) -> None:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(*columns, title=title, title_justify="left", box=box.SIMPLE_HEAD)
-    for row in rows:
-        table.add_row(*row)
-    Console().print(table, markup=False, highlight=False)
-
-
-def _findings(findings: list[str]) -> None:
-    for finding in findings:
-        typer.echo(f"note: {finding}")
+    miss = None
+    with progress_bar() as progress:
+        try:
+            build_files(
+                blade,
+                output,
+                formats=formats or DEFAULT_FORMATS,
+                options=options,
+                progress=progress,
+            )
+        except ToleranceError as error:
+            miss = error
+    print_summary(output, blade.name)
+    if miss is not None:
+        raise miss

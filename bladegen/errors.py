@@ -15,7 +15,9 @@ __all__ = [
     "FileError",
     "Finding",
     "GeometryError",
+    "PerturbationError",
     "RenderError",
+    "SpaceError",
     "ToleranceError",
 ]
 
@@ -53,6 +55,14 @@ class GeometryError(BladegenError):
 
 class CadError(BladegenError):
     """A solid could not be made, or is not the valid closed solid it should be."""
+
+
+class PerturbationError(BladegenError):
+    """A perturbation is out of range, or makes a blade that cannot be."""
+
+
+class SpaceError(BladegenError):
+    """A shape space cannot be made or read, or is asked for what it does not hold."""
 
 
 class ToleranceError(CadError):

@@ -6,6 +6,7 @@ which product: the solid, the mesh, or the blade itself.  Files appear whole or 
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -63,40 +64,30 @@ class Options:
             )
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Products:
     """What a blade's files are made from, each made once and when first asked for."""
 
     blade: Blade
     options: Options = field(default_factory=Options)
     progress: Callable[[str], None] = lambda _: None
-    _made: dict[str, Any] = field(default_factory=dict)
 
+    @cached_property
     def solid(self) -> cad.Solid:
         """The closed solid."""
-        options = self.options
-        return self._once(  # type: ignore[no-any-return]
-            "solid",
-            lambda: cad.solid(
-                self.blade,
-                tolerance=options.tolerance,
-                sections=options.sections,
-                tip=options.tip,
-                progress=self.progress,
-            ),
+        return cad.solid(
+            self.blade,
+            tolerance=self.options.tolerance,
+            sections=self.options.sections,
+            tip=self.options.tip,
+            progress=self.progress,
         )
 
+    @cached_property
     def mesh(self) -> mesh.TriangleMesh:
         """The triangle mesh."""
         self.progress("meshing")
-        return self._once(  # type: ignore[no-any-return]
-            "mesh", lambda: mesh.from_blade(self.blade, stations=self.options.stations)
-        )
-
-    def _once(self, name: str, make: Callable[[], Any]) -> Any:
-        if name not in self._made:
-            self._made[name] = make()
-        return self._made[name]
+        return mesh.from_blade(self.blade, stations=self.options.stations)
 
 
 Writer = Callable[[Products, Path], None]
@@ -111,12 +102,12 @@ class Format:
 
 
 def _write_step(products: Products, path: Path) -> None:
-    cad.write_step(products.solid(), path)
+    cad.write_step(products.solid, path)
 
 
 def _write_stl(products: Products, path: Path) -> None:
     unit = products.options.unit
-    scaled = mesh.to_trimesh(products.mesh(), scale=UNITS[unit])
+    scaled = mesh.to_trimesh(products.mesh, scale=UNITS[unit])
     header = f"bladegen {products.blade.name}, unit: {unit}".encode("ascii", "replace")
     body = scaled.export(file_type="stl")
     path.write_bytes(header[:STL_HEADER].ljust(STL_HEADER) + body[STL_HEADER:])
@@ -124,7 +115,7 @@ def _write_stl(products: Products, path: Path) -> None:
 
 def _write_obj(products: Products, path: Path) -> None:
     unit = products.options.unit
-    scaled = mesh.to_trimesh(products.mesh(), scale=UNITS[unit])
+    scaled = mesh.to_trimesh(products.mesh, scale=UNITS[unit])
     header = f"bladegen {' '.join(products.blade.name.split())}, unit: {unit}"
     path.write_text(
         scaled.export(file_type="obj", include_normals=False, header=header), encoding="utf-8"
@@ -132,21 +123,21 @@ def _write_obj(products: Products, path: Path) -> None:
 
 
 def _write_ply(products: Products, path: Path) -> None:
-    scaled = mesh.to_trimesh(products.mesh(), scale=UNITS[products.options.unit])
+    scaled = mesh.to_trimesh(products.mesh, scale=UNITS[products.options.unit])
     path.write_bytes(scaled.export(file_type="ply", vertex_normal=False))
 
 
 def _write_glb(products: Products, path: Path) -> None:
-    path.write_bytes(mesh.to_trimesh(products.mesh()).export(file_type="glb"))
+    path.write_bytes(mesh.to_trimesh(products.mesh).export(file_type="glb"))
 
 
 def _write_3mf(products: Products, path: Path) -> None:
-    scaled = mesh.to_trimesh(products.mesh(), scale=UNITS["mm"])
+    scaled = mesh.to_trimesh(products.mesh, scale=UNITS["mm"])
     path.write_bytes(scaled.export(file_type="3mf"))
 
 
 def _write_vtp(products: Products, path: Path) -> None:
-    preview.write_vtp(products.mesh(), path, scale=UNITS[products.options.unit])
+    preview.write_vtp(products.mesh, path, scale=UNITS[products.options.unit])
 
 
 def _write_png(products: Products, path: Path) -> None:
@@ -222,7 +213,7 @@ def write(products: Products, path: Path) -> None:
     writer = format_of(path).write
     target, miss = path, None
     if writer is _write_step:
-        solid, tolerance = products.solid(), products.options.tolerance
+        solid, tolerance = products.solid, products.options.tolerance
         if products.options.sections is None and solid.deviation.maximum > tolerance:
             target = aside(path)
             miss = ToleranceError(

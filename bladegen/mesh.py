@@ -10,15 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from bladegen.arrays import Array, readonly
+from bladegen.arrays import Array, Indices, readonly
 from bladegen.blade import Blade
 from bladegen.errors import FileError, GeometryError
 
 __all__ = ["TriangleMesh", "from_blade", "surface", "to_trimesh"]
-
-Indices = npt.NDArray[np.int64]
 
 SECTIONS = 300  # 300 x 401 landmarks make 240,000 triangles
 SAME_POINT = 1e-9  # m; landmarks nearer than this are one vertex

@@ -14,12 +14,15 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.arrays import Array
+from bladegen.arrays import Array, Indices
 
 __all__ = ["SectionCurves", "SectionSplines"]
 
 PARAMETER_TOLERANCE = 1e-6  # of u, before the last step; a maximum is off by its square
 ITERATIONS = 60  # bisection alone needs 40
+SAME_NOSE = 3  # landmarks; nearer peaks are one nose
+RIVAL = 1e-3  # of the squared distance; peaks at landmarks lower than this are of no concern
+AMBIGUOUS = 2e-6  # of a chord; noses whose distances differ by less share the leading edge
 WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
 
 
@@ -80,15 +83,21 @@ class SectionSplines:
             ``points @ A + c`` has unit chord and the thickness.
         """
         curves = self.fit(points)
-        scale = 1.0 / curves.chord
-        A = scale[:, None, None] * np.eye(2)
-        if relative_thickness is None:
-            return A, np.zeros_like(curves.leading_edge)
-        stretch = (relative_thickness / curves.relative_thickness - 1.0) * scale
-        along = (curves.trailing_edge - curves.leading_edge) * scale[:, None]
+        nose, edge = curves.leading_edge, curves.trailing_edge
+        length = np.linalg.norm(edge - nose, axis=-1)
+        along = (edge - nose) / length[:, None]
         normal = np.stack([-along[:, 1], along[:, 0]], axis=-1)
-        lift = stretch[:, None, None] * normal[:, :, None] * normal[:, None, :]
-        return A + lift, -(curves.leading_edge[:, None] @ lift)[:, 0]
+        stretch, chord = np.ones_like(length), curves.chord
+        if relative_thickness is not None:
+            far = np.stack(curves._noses) - nose
+            x, y = np.sum(far * along, axis=-1), np.sum(far * normal, axis=-1)
+            for _ in range(3):  # noses beside the chord line move with the stretch
+                stretch = relative_thickness * chord / curves.thickness
+                chord = np.hypot(length - x, stretch * y).max(axis=0)
+        lift = (stretch - 1.0)[:, None, None] * normal[:, :, None] * normal[:, None, :]
+        scale = 1.0 / chord
+        shift = -(nose[:, None] @ lift)[:, 0] * scale[:, None]
+        return scale[:, None, None] * (np.eye(2) + lift), shift
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,39 +130,83 @@ class SectionCurves:
         return 0.5 * (self.points[:, 0] + self.points[:, -1])
 
     @cached_property
-    def leading_edge(self) -> Array:
-        """The leading edges, (k, 2)."""
-        first = len(self.u) // 4  # it is never in the rear quarters
+    def _distances(self) -> Array:
+        """Squared distances (k, n - 2 first) of the front half's landmarks to the edge."""
+        first = len(self.u) // 4
         away = self.points[:, first:-first] - self.trailing_edge[:, None]
-        far = np.argmax(np.einsum("kni,kni->kn", away, away), axis=1) + first
+        squares: Array = np.einsum("kni,kni->kn", away, away)
+        return squares
+
+    def _peak(self, landmark: Indices) -> Array:
+        """Climb from landmarks (k,) to the points there that are farthest from the edge."""
 
         def receding(u: Array) -> tuple[Array, Array]:
             p, d1, d2 = self.at(u)
             r = p - self.trailing_edge
             return np.sum(r * d1, axis=-1), np.sum(d1 * d1 + r * d2, axis=-1)
 
-        return self.at(_root(receding, self.u[far - 1], self.u[far], self.u[far + 1]))[0]
+        u = self.u
+        return self.at(_root(receding, u[landmark - 1], u[landmark], u[landmark + 1]))[0]
+
+    @cached_property
+    def _noses(self) -> tuple[Array, Array]:
+        """The farthest points, and the farthest of other peaks of the distance, (k, 2) each."""
+        distances, first = self._distances, len(self.u) // 4
+        best = np.argmax(distances, axis=1)
+        peaks = np.zeros(distances.shape, dtype=bool)
+        peaks[:, 1:-1] = (distances[:, 1:-1] > distances[:, :-2]) & (
+            distances[:, 1:-1] >= distances[:, 2:]
+        )
+        peaks &= np.abs(np.arange(distances.shape[1]) - best[:, None]) > SAME_NOSE
+        peaks &= distances > distances.max(axis=1, keepdims=True) * (1.0 - RIVAL)
+        other = np.argmax(np.where(peaks, distances, -1.0), axis=1)
+        other = np.where(peaks.any(axis=1), other, best)
+        farthest = self._peak(best + first)
+        return farthest, farthest if np.array_equal(other, best) else self._peak(other + first)
+
+    @cached_property
+    def leading_edge(self) -> Array:
+        """The leading edges, (k, 2): the points farthest from the trailing-edge midpoints.
+
+        On thick sections two points can be farthest by turns as the span goes on; where they
+        agree to `AMBIGUOUS`, the leading edge moves smoothly from the one to the other.
+        """
+        one, two = self._noses
+        ahead = self._reach(one) - self._reach(two)
+        f = np.clip(ahead / AMBIGUOUS, -1.0, 1.0)
+        share = (0.5 - 0.25 * f * (3.0 - f * f))[:, None]
+        return one + share * (two - one)
+
+    def _reach(self, points: Array) -> Array:
+        """Distances of points (k, 2) from the trailing-edge midpoints, (k,)."""
+        reach: Array = np.linalg.norm(points - self.trailing_edge, axis=-1)
+        return reach
 
     @cached_property
     def chord(self) -> Array:
-        """The chords, (k,)."""
-        length: Array = np.linalg.norm(self.trailing_edge - self.leading_edge, axis=-1)
-        return length
+        """The chords, (k,): the largest distances from the trailing-edge midpoints."""
+        return np.maximum(*(self._reach(nose) for nose in self._noses))
 
-    @cached_property
+    @property
     def relative_thickness(self) -> Array:
         """Largest distance between the sides normal to the chord line, over the chord, (k,)."""
-        return self._along_chord._thickness / self.chord
+        return self.thickness / self.chord
 
     @property
     def _along_chord(self) -> "SectionCurves":
         """The sections turned so that x runs along the chord line."""
-        along = (self.trailing_edge - self.leading_edge) / self.chord[:, None]
+        along = self.trailing_edge - self.leading_edge
+        along = along / np.linalg.norm(along, axis=-1, keepdims=True)
         axes = np.stack([along, np.stack([-along[:, 1], along[:, 0]], axis=-1)], axis=-1)
         return SectionCurves(self.u, self.points @ axes, self.slopes @ axes)
 
+    @cached_property
+    def thickness(self) -> Array:
+        """Largest distance between the sides normal to the chord line, (k,)."""
+        return self._along_chord._height
+
     @property
-    def _thickness(self) -> Array:
+    def _height(self) -> Array:
         """Largest height between the sides at one x, (k,)."""
         middle = len(self.u) // 2
         reach = min(WINDOW, (middle - 3) // 2)

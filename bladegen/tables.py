@@ -6,8 +6,19 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.definition import BladeDefinition, Distribution
+from bladegen.pga import ShapeSpace
 
-__all__ = ["definition_figures", "report_rows", "shown", "station_rows"]
+__all__ = [
+    "definition_figures",
+    "report_rows",
+    "shown",
+    "space_figures",
+    "space_rows",
+    "station_rows",
+]
+
+
+SHOWN_DIRECTIONS = 12
 
 
 def definition_figures(definition: BladeDefinition) -> dict[str, Any]:
@@ -111,3 +122,32 @@ def shown(value: Any) -> str:
         parts = (f"({shown(item)})" if isinstance(item, list) else shown(item) for item in value)
         return ", ".join(parts)
     return str(value)
+
+
+def space_figures(space: ShapeSpace) -> dict[str, Any]:
+    """Return what a shape space holds."""
+    return {
+        "about": space.about,
+        "shapes": len(space.coordinates),
+        "landmarks": len(space.u),
+        "modes": space.dimension,
+        "variance_ratio": [float(value) for value in space.variance_ratio[:SHOWN_DIRECTIONS]],
+        "lower": space.lower.tolist(),
+        "upper": space.upper.tolist(),
+    }
+
+
+def space_rows(space: ShapeSpace) -> list[list[str]]:
+    """Return a row a principal direction: variance, and the range of the modes kept."""
+    ratio = 100.0 * space.variance_ratio[:SHOWN_DIRECTIONS]
+    kept = space.dimension
+    return [
+        [
+            str(k + 1),
+            f"{ratio[k]:.2f}",
+            f"{ratio[: k + 1].sum():.2f}",
+            f"{space.lower[k]:.4f}" if k < kept else "",
+            f"{space.upper[k]:.4f}" if k < kept else "",
+        ]
+        for k in range(len(ratio))
+    ]

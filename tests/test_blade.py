@@ -68,7 +68,7 @@ def test_results_do_not_depend_on_representatives(definition, path, seed):
     blade = Blade.from_definition(definition, landmarks=N, path=path)
     turns = np.linalg.qr(np.random.default_rng(seed).normal(size=(len(blade.eta), 2, 2))).Q
     turns[:, :, 0] *= np.linalg.det(turns)[:, None]
-    turned = replace(blade, points=blade.points @ turns, M=turns.mT @ blade.M)
+    turned = replace(blade, representatives=blade.representatives @ turns, M=turns.mT @ blade.M)
     assert_allclose(turned.profiles(SPANS), blade.profiles(SPANS), atol=1e-9)
 
 
@@ -162,7 +162,7 @@ def test_findings_name_the_blunt_base_and_thickness_that_disagrees():
 
 def test_arrays_of_a_blade_cannot_be_written():
     blade = Blade.from_definition(read("nrel5mw"), landmarks=N)
-    for field in ("u", "eta", "points", "M", "b"):
+    for field in ("u", "eta", "representatives", "M", "b"):
         with pytest.raises(ValueError, match="read-only"):
             getattr(blade, field)[0] = 0.0
 

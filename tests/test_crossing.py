@@ -14,7 +14,7 @@ def test_airfoils_do_not_cross_themselves(xy):
 @given(airfoils())
 def test_a_tail_bent_over_is_found(xy):
     crossed = np.array(xy)
-    crossed[-1] = [0.5, -2.0 * np.sign(crossed[-5, 1])]
+    crossed[-1] = [0.5, 2.0 * np.sign(xy[1, 1] - xy[-2, 1])]
     found = first_crossing(crossed)
     assert found is not None
     assert max(found) == len(xy) - 2

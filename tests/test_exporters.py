@@ -79,7 +79,7 @@ def test_a_solid_that_misses_its_tolerance_is_kept_aside(blade, tmp_path, monkey
 
 def test_products_are_made_once(blade):
     products = exporters.Products(blade, exporters.Options(stations=20))
-    assert products.mesh() is products.mesh()
+    assert products.mesh is products.mesh
 
 
 @pytest.mark.parametrize("name", ["blade.xyz", "blade", "blade.step.gz"])

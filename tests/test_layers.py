@@ -13,6 +13,8 @@ PACKAGE = Path(bladegen.__file__).parent
 FLOW = [
     "errors",
     "arrays",
+    "files",
+    "archive",
     "grassmann",
     "landmarks",
     "crossing",
@@ -25,18 +27,25 @@ FLOW = [
     "edges",
     "crowding",
     "remarks",
+    "pga",
+    "deformation",
+    "perturbation",
     "blade",
     "properties",
+    "cst",
+    "database",
     "net",
     "mesh",
-    "files",
     "cad",
     "checks",
     "preview",
     "exporters",
     "build",
-    "lengths",
+    "texts",
     "tables",
+    "plots",
+    "terminal",
+    "cli_space",
     "cli",
 ]
 LATE = {
@@ -45,6 +54,7 @@ LATE = {
     "trimesh": {"mesh"},
     "pyvista": {"preview"},
     "vtkmodules": {"preview"},
+    "matplotlib": {"plots"},
 }
 CORE = FLOW[: FLOW.index("net") + 1]
 MODULES = sorted(PACKAGE.rglob("*.py"))

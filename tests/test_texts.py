@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bladegen.errors import BladegenError
-from bladegen.lengths import metres
+from bladegen.texts import metres
 
 
 @given(st.floats(1e-6, 1e3), st.sampled_from([("um", 1e-6), ("mm", 1e-3), ("cm", 1e-2), ("m", 1)]))

@@ -1,0 +1,63 @@
+"""Arrays on disk: npz files with a format version and a checksum.
+
+Nothing in such a file is executed: plain arrays and text only.
+"""
+
+import hashlib
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.arrays import Array
+from bladegen.errors import SpaceError
+from bladegen.files import replacing
+
+__all__ = ["load_arrays", "save_arrays"]
+
+VERSION = 1
+MAX_BYTES = 200_000_000
+
+
+def save_arrays(path: Path, arrays: dict[str, Array], about: str) -> None:
+    """Write arrays to a file; an existing one is replaced once the new one is whole."""
+    labels = {"version": VERSION, "about": about, "checksum": _checksum(arrays, about)}
+    payload: dict[str, Any] = {name: np.array(value) for name, value in labels.items()}
+    with replacing(path) as temporary, temporary.open("wb") as stream:
+        np.savez_compressed(stream, **(payload | arrays))
+
+
+def load_arrays(path: Path, names: Sequence[str]) -> tuple[dict[str, Array], str]:
+    """Read the named arrays and the text that goes with them.
+
+    Raises
+    ------
+    SpaceError
+        If the file cannot be read, is of another version, or is damaged.
+    """
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise SpaceError(f"{path}: is larger than {MAX_BYTES} bytes")
+        with np.load(path, allow_pickle=False) as archive:
+            held = {name: archive[name] for name in ("version", "about", "checksum", *names)}
+    except OSError as error:
+        raise SpaceError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise SpaceError(f"{path}: is no shape space: {error}") from None
+    if held["version"].shape != () or held["version"] != VERSION:
+        raise SpaceError(f"{path}: has version {held['version']}, allowed is {VERSION}")
+    arrays = {name: held[name] for name in names}
+    about = str(held["about"])
+    if str(held["checksum"]) != _checksum(arrays, about):
+        raise SpaceError(f"{path}: is damaged: its checksum does not match its arrays")
+    return arrays, about
+
+
+def _checksum(arrays: dict[str, Array], about: str) -> str:
+    digest = hashlib.sha256(about.encode())
+    for name, array in arrays.items():
+        digest.update(f"{name} {array.shape} {array.dtype.str}".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,268 @@
+"""Consistent deformations of a blade: where they act, and what they do to shape and planform.
+
+A `Deformation` carries one tangent vector of a shape space by parallel transport from the mean
+to the blade's shape at each span and follows it there: inner products, and so normal
+coordinates, are the same at every span ("Consistent blade deformations" of the paper).  An
+`AffineChange` holds the paper's affine parameters, which move no point of the Grassmannian, and
+scalings of the planform.  A `Window` says where along the span they act.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from bladegen import grassmann
+from bladegen.arrays import Array, ArrayLike, readonly
+from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis, Station
+from bladegen.errors import PerturbationError
+from bladegen.pga import ShapeSpace
+
+__all__ = ["AffineChange", "Coordinates", "Deformation", "Thickening", "Window", "deformation_of"]
+
+ROUND = 0.02  # of the chord; an airfoil nearer to its circle than this is round
+SAME_LANDMARKS = 1e-12
+RAMP = 33  # span fractions that resolve a window's rise
+RANGES = {
+    "thickness": (0.2, 5.0),
+    "camber": (0.2, 1.8),
+    "chord": (0.2, 5.0),
+    "twist": (-np.pi / 2, np.pi / 2),
+    "chord_scale": (0.2, 5.0),
+    "twist_scale": (-5.0, 5.0),
+    "prebend_scale": (-5.0, 5.0),
+}
+
+
+@dataclass(frozen=True)
+class Window:
+    """A weight over span: 0 up to `start`, 1 from `end` on, C2 between."""
+
+    start: float = 0.0
+    end: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.start <= self.end <= 1.0:
+            raise PerturbationError(
+                f"window: got {self.start:g} to {self.end:g}, must rise within 0 to 1"
+            )
+
+    @classmethod
+    def beyond_circles(cls, stations: Sequence[Station]) -> "Window":
+        """Rise from the last round station to the first lifting one; 1 all over without any."""
+        lifting = [not _is_round(station) for station in stations]
+        first = lifting.index(True) if True in lifting else len(stations) - 1
+        if first == 0:
+            return cls()
+        return cls(stations[first - 1].eta, stations[first].eta)
+
+    def __call__(self, eta: Array) -> Array:
+        """Return the weight at span fractions `eta`."""
+        if self.end == self.start:
+            return np.where(eta >= self.end, 1.0, 0.0) if self.end > 0 else np.ones_like(eta)
+        f = np.clip((eta - self.start) / (self.end - self.start), 0.0, 1.0)
+        weight: Array = f**3 * (10.0 - 15.0 * f + 6.0 * f**2)
+        return weight
+
+    def with_ramp(self, grid: Array) -> Array:
+        """Return a grid united with span fractions that resolve the rise."""
+        return np.union1d(grid, np.linspace(self.start, self.end, RAMP))
+
+
+def _is_round(station: Station) -> bool:
+    """Tell whether an airfoil is a circle, whole or cut open at its edge."""
+    points = station.airfoil.coordinates
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float(np.max(high - low))
+    radius = np.linalg.norm(points - 0.5 * (low + high), axis=1)
+    return bool(np.all(np.abs(radius - 0.5 * size) < ROUND * size))
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinates:
+    """Normal coordinates over span: the same everywhere, or monotone between knots.
+
+    Parameters
+    ----------
+    grid : (m,) array
+        Span fractions of the knots, increasing; one knot means the same everywhere.
+    values : (m, r) array
+        Coordinates there [rad]; the end values hold beyond.
+    """
+
+    grid: Array
+    values: Array
+
+    def __post_init__(self) -> None:
+        grid, values = readonly(self.grid), readonly(self.values)
+        if grid.ndim != 1 or values.ndim != 2 or len(grid) != len(values) or not len(grid):
+            raise PerturbationError(
+                f"coordinates over span: got {grid.shape} knots and {values.shape} values, must be "
+                "m knots and m rows"
+            )
+        if not (np.all(np.diff(grid) > 0) and grid[0] >= 0 and grid[-1] <= 1):
+            raise PerturbationError("coordinates over span: knots must increase within 0 to 1")
+        object.__setattr__(self, "grid", grid)
+        object.__setattr__(self, "values", values)
+
+    @classmethod
+    def constant(cls, t: ArrayLike) -> "Coordinates":
+        """The same coordinates (r,) everywhere."""
+        return cls(np.zeros(1), np.atleast_2d(np.asarray(t, dtype=np.float64)))
+
+    def __call__(self, eta: Array) -> Array:
+        """Return coordinates (k, r) at span fractions (k,)."""
+        if len(self.grid) == 1:
+            return np.broadcast_to(self.values, (len(eta), self.values.shape[1]))
+        columns = [Distribution(self.grid, column)(eta) for column in self.values.T]
+        return np.stack(columns, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Deformation:
+    """A consistent deformation of shapes.
+
+    Parameters
+    ----------
+    space : ShapeSpace
+        Mean and modes.
+    t : Coordinates
+        How far along each mode [rad].
+    window : Window
+        Where it acts.
+    """
+
+    space: ShapeSpace
+    t: Coordinates
+    window: Window
+
+    def __call__(self, X: Array, eta: Array) -> Array:
+        """Return deformed shapes (k, n, 2) of shapes X at span fractions (k,), bases joined."""
+        t = self.t(eta) * self.window(eta)[:, None]
+        return grassmann.exp(X, self.space.carried(t, X))
+
+
+def deformation_of(
+    space: ShapeSpace | None,
+    t: Coordinates,
+    window: Window,
+    u: Array,
+    *,
+    allow_extrapolation: bool = False,
+) -> Deformation:
+    """Return a deformation for shapes with landmarks at `u`, or say why there is none.
+
+    Raises
+    ------
+    PerturbationError
+        If there is no space, its landmarks are others, or `t` leaves its data's range.
+    """
+    if space is None:
+        raise PerturbationError("t: coordinates need a shape space, such as ShapeSpace.bundled()")
+    if len(space.u) != len(u) or not np.allclose(space.u, u, rtol=0, atol=SAME_LANDMARKS):
+        raise PerturbationError(
+            f"the shape space is of {len(space.u)} landmarks, the blade of {len(u)}, or they are "
+            "spaced otherwise; build the blade with the space's landmarks"
+        )
+    beyond = space.outside(t.values)
+    if beyond and not allow_extrapolation:
+        raise PerturbationError(f"{beyond}; extrapolation must be asked for")
+    return Deformation(space, t, window)
+
+
+@dataclass(frozen=True)
+class AffineChange:
+    """The paper's affine parameters and scalings of the planform; identity by default.
+
+    The first four act within the window, through the maps of the paper; their effect on chord
+    and relative thickness is exact, and no point of the Grassmannian moves.
+
+    Parameters
+    ----------
+    thickness : float
+        diag(1, s): thickness times s; 1 is the identity, 0.8 to 1.2 is usual.
+    camber : float
+        diag(2 - s, s), the paper's 2 diag(1 - s/2, s/2): chord against thickness and camber;
+        identity at 1, 0.9 to 1.1 is usual.
+    chord : float
+        diag(s, 1): chord times s at the same thickness in metres; 1 is the identity.
+    twist : float
+        A turn of the sections [rad], leading edge upwind positive; 0 is the identity.
+    chord_scale, twist_scale, prebend_scale : float
+        Factors of the whole distributions; 1 is the identity.
+    """
+
+    thickness: float = 1.0
+    camber: float = 1.0
+    chord: float = 1.0
+    twist: float = 0.0
+    chord_scale: float = 1.0
+    twist_scale: float = 1.0
+    prebend_scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, (low, high) in RANGES.items():
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise PerturbationError(
+                    f"{name}: got {value:g}, allowed is {low:.4g} to {high:.4g}"
+                )
+
+    def changed(self) -> dict[str, float]:
+        """Return the parameters that are not the identity."""
+        return {
+            entry.name: getattr(self, entry.name)
+            for entry in fields(self)
+            if getattr(self, entry.name) != entry.default
+        }
+
+    @property
+    def _widening(self) -> float:
+        """The factor along the chord of the three diagonal maps."""
+        return (2.0 - self.camber) * self.chord
+
+    @property
+    def thickening(self) -> float:
+        """The factor of the relative thickness of the three diagonal maps."""
+        return self.thickness * self.camber / self._widening
+
+    def applied(self, definition: BladeDefinition, window: Window) -> BladeDefinition:
+        """Return a definition with chord, twist, offsets and axis changed.
+
+        A windowed factor is put on grids that resolve the window; offsets in metres follow the
+        chord.
+        """
+
+        def scaled(quantity: Distribution, factor: float, whole: float = 1.0) -> Distribution:
+            if factor == 1.0 and whole == 1.0:
+                return quantity
+            grid = quantity.grid if factor == 1.0 else window.with_ramp(quantity.grid)
+            values = quantity(grid) * whole * (1.0 + window(grid) * (factor - 1.0))
+            return replace(quantity, grid=grid, values=values)
+
+        twist = scaled(definition.twist, 1.0, self.twist_scale)
+        if self.twist:
+            grid = window.with_ramp(twist.grid)
+            twist = replace(twist, grid=grid, values=twist(grid) + window(grid) * self.twist)
+        offset = definition.section_offset_y
+        axis = definition.axis
+        return replace(
+            definition,
+            chord=scaled(definition.chord, self._widening, self.chord_scale),
+            twist=twist,
+            section_offset_y=None
+            if offset is None
+            else scaled(offset, self._widening, self.chord_scale),
+            axis=ReferenceAxis(scaled(axis.x, 1.0, self.prebend_scale), axis.y, axis.z),
+        )
+
+
+@dataclass(frozen=True)
+class Thickening:
+    """A windowed factor of the relative thickness over span."""
+
+    factor: float
+    window: Window
+
+    def __call__(self, eta: Array) -> Array:
+        return 1.0 + self.window(eta) * (self.factor - 1.0)

@@ -1,0 +1,133 @@
+"""Perturbing a blade: what `Blade.perturbed` asks for, does and refuses.
+
+Shape moves along the modes of a space, the same at every span; thickness, chord, twist and
+prebend move by the paper's affine parameters.  A perturbed blade is a blade like any other.
+"""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from bladegen import affine
+from bladegen.arrays import Array, ArrayLike
+from bladegen.crossing import crossing_sections
+from bladegen.definition import BladeDefinition
+from bladegen.deformation import (
+    AffineChange,
+    Coordinates,
+    Deformation,
+    Thickening,
+    Window,
+    deformation_of,
+)
+from bladegen.errors import PerturbationError
+from bladegen.pga import ShapeSpace
+from bladegen.sections import SectionSplines
+
+__all__ = ["Perturbable"]
+
+SOUND_SPANS = 60  # spans at which a perturbed blade is tested
+LOST_THICKNESS = 0.2  # of the thickness before, which a deformation must leave
+
+
+class Perturbable:
+    """The perturbing half of `Blade`, which is its only kind and holds these fields."""
+
+    if TYPE_CHECKING:
+        definition: BladeDefinition
+        u: Array
+        eta: Array
+        deformations: tuple[Deformation, ...]
+        thickenings: tuple[Thickening, ...]
+        changes: tuple[dict[str, Any], ...]
+
+        @property
+        def _splines(self) -> SectionSplines: ...
+
+        def _with(self, **changes: Any) -> Self: ...
+
+        def _shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]: ...
+
+    def perturbed(
+        self,
+        space: ShapeSpace | None = None,
+        t: ArrayLike | Coordinates = (),
+        *,
+        thickness: float = 1.0,
+        camber: float = 1.0,
+        chord: float = 1.0,
+        twist: float = 0.0,
+        chord_scale: float = 1.0,
+        twist_scale: float = 1.0,
+        prebend_scale: float = 1.0,
+        window: Window | None = None,
+        allow_extrapolation: bool = False,
+        name: str | None = None,
+    ) -> Self:
+        """Return a perturbed blade; this one stays as it is.
+
+        Parameters
+        ----------
+        space : ShapeSpace, optional
+            Modes of deformation; needed with `t`.
+        t : (r,) array or Coordinates
+            Coordinates along the modes [rad], the same at all spans or with knots over span.
+        thickness, camber, chord, twist, chord_scale, twist_scale, prebend_scale : float
+            See `deformation.AffineChange`; twist in radians.
+        window : Window, optional
+            Where shape, thickness, camber, chord and twist change; by default not on round
+            roots, and fully from the first lifting airfoil on.
+        allow_extrapolation : bool
+            Take coordinates beyond the range of the space's data.
+        name : str, optional
+            The perturbed blade's name; this one's by default.
+
+        Raises
+        ------
+        PerturbationError
+            If a value is out of range, or a section crosses itself or loses its thickness.
+        """
+        affine_change = AffineChange(
+            thickness, camber, chord, twist, chord_scale, twist_scale, prebend_scale
+        )
+        window = window or Window.beyond_circles(self.definition.stations)
+        coordinates = t if isinstance(t, Coordinates) else Coordinates.constant(t)
+        asked: dict[str, Any] = affine_change.changed()
+        deformations = self.deformations
+        if coordinates.values.size:
+            deformations += (
+                deformation_of(
+                    space, coordinates, window, self.u, allow_extrapolation=allow_extrapolation
+                ),
+            )
+            asked |= {"pga": coordinates.values.tolist(), "pga_at_eta": coordinates.grid.tolist()}
+        thickening = Thickening(affine_change.thickening, window)
+        definition = affine_change.applied(self.definition, window)
+        variant = self._with(
+            definition=replace(definition, name=name or self.definition.name),
+            deformations=deformations,
+            thickenings=self.thickenings + ((thickening,) if thickening.factor != 1.0 else ()),
+            changes=(*self.changes, asked | {"window": [window.start, window.end]}),
+        )
+        variant._require_sound(asked)
+        return variant
+
+    def _require_sound(self, asked: dict[str, Any]) -> None:
+        """Raise if a section crosses itself or has lost its thickness."""
+        eta = np.union1d(np.linspace(0.0, 1.0, SOUND_SPANS), self.eta)
+        plain, X, M, b = self._shapes(eta)
+        points = affine.restore(X, M, b)
+        crossing = crossing_sections(points)
+        own = self._splines.fit(points).relative_thickness
+        before = self._splines.fit(affine.restore(plain, M, b)).relative_thickness
+        thin = np.flatnonzero(~(own > LOST_THICKNESS * before))
+        for places, fault in ((crossing, "crosses itself"), (thin, "loses its thickness")):
+            if len(places):
+                place = float(eta[places[0]])
+                near = self.definition.stations[int(np.argmin(np.abs(self.eta - place)))]
+                given = ", ".join(f"{key} = {value}" for key, value in asked.items())
+                raise PerturbationError(
+                    f"{self.definition.name}: the section at eta = {place:.4f} (near "
+                    f"{near.airfoil.name} at {near.eta:.4f}) {fault} with {given}"
+                )

@@ -1,0 +1,261 @@
+"""Principal geodesics: a low-dimensional space of shapes learned from points of Gr(n, 2).
+
+Normal coordinates t of a shape are the components of its logarithm at the Karcher mean along
+the principal modes; a shape of the learned manifold is exp(mean, sum_k t_k modes_k)
+(sections "Principal geodesic deformations" and "Consistent blade deformations" of the paper;
+Fletcher, Lu & Joshi 2003).  Coordinates are radians: |t| is the distance from the mean.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from bladegen import grassmann
+from bladegen.archive import load_arrays, save_arrays
+from bladegen.arrays import Array, readonly
+from bladegen.errors import GeometryError, SpaceError
+from bladegen.landmarks import landmark_parameters
+
+__all__ = ["ShapeSpace"]
+
+ARRAYS = ("u", "mean", "modes", "variances", "coordinates")
+CHUNK = 1000  # shapes handled at once: bounds memory to some tens of megabytes
+TOLERANCE = 1e-10  # mean tangent at the Karcher mean [rad]
+STEPS = 100
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeSpace:
+    """Mean, principal modes and spread of a set of shapes.
+
+    Parameters
+    ----------
+    u : (n,) array
+        Landmark parameters of the shapes.
+    mean : (n, 2) array
+        Karcher mean: an orthonormal basis.
+    modes : (r, n, 2) array
+        Principal tangent vectors at the mean: orthonormal and horizontal.
+    variances : (q,) array
+        Variance along all principal directions, largest first [rad^2]; q >= r.
+    coordinates : (m, r) array
+        Normal coordinates of the shapes it was learned from.
+    about : str
+        Where the shapes are from.
+    """
+
+    u: Array
+    mean: Array
+    modes: Array
+    variances: Array
+    coordinates: Array = field(repr=False)
+    about: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ARRAYS:
+            object.__setattr__(self, name, readonly(getattr(self, name)))
+
+    @classmethod
+    def fit(
+        cls, points: Array, *, modes: int = 4, u: Array | None = None, about: str = ""
+    ) -> "ShapeSpace":
+        """Learn a space from shapes.
+
+        Parameters
+        ----------
+        points : (m, n, 2) array
+            Orthonormal bases, any representatives.
+        modes : int
+            How many principal modes to keep.
+        u : (n,) array, optional
+            Their landmark parameters; those of `landmarks.landmark_parameters` if not given.
+        about : str
+            Where the shapes are from.
+
+        Raises
+        ------
+        SpaceError
+            If there are too few shapes for the modes.
+        GeometryError
+            If the Karcher mean does not converge.
+        """
+        count, n, _ = points.shape
+        largest = min(count - 1, 2 * n - 4)
+        if not 1 <= modes <= largest:
+            raise SpaceError(f"modes: got {modes}, allowed is 1 to {largest} for {count} shapes")
+        mean = _karcher_mean(points)
+        # The covariance acts on tangent vectors as 2n numbers: its Gram matrix is summed up
+        # over chunks of shapes, and no n x n projector is formed.
+        gram = np.zeros((2 * n, 2 * n))
+        for part in _chunks(count):
+            logs = grassmann.log(mean[None], points[part]).reshape(-1, 2 * n)
+            gram += logs.T @ logs
+        variances, vectors = np.linalg.eigh(gram / count)
+        variances, vectors = np.maximum(variances[::-1], 0.0), vectors[:, ::-1]
+        kept = _horizontal(mean, vectors[:, :modes].T.reshape(modes, n, 2))
+        space = cls(
+            u=landmark_parameters(n) if u is None else u,
+            mean=mean,
+            modes=kept,
+            variances=variances[:largest],
+            coordinates=np.zeros((0, modes)),
+            about=about,
+        )
+        coordinates = np.concatenate([space.encode(points[part]) for part in _chunks(count)])
+        return cls(space.u, mean, kept, space.variances, coordinates, about)
+
+    @classmethod
+    def bundled(cls) -> "ShapeSpace":
+        """Return the space of the paper's 16-airfoil database: four modes, 401 landmarks."""
+        return cls.load(Path(__file__).resolve().parent / "data" / "reference.npz")
+
+    @classmethod
+    def load(cls, path: str | Path) -> "ShapeSpace":
+        """Read a space from an npz file.
+
+        Raises
+        ------
+        SpaceError
+            If the file is no space, is of another version, or is damaged.
+        """
+        arrays, about = load_arrays(Path(path), ARRAYS)
+        return cls(**arrays, about=about)
+
+    def save(self, path: str | Path) -> None:
+        """Write the space to an npz file, with a version and a checksum."""
+        save_arrays(Path(path), {name: getattr(self, name) for name in ARRAYS}, self.about)
+
+    @property
+    def dimension(self) -> int:
+        """The number of modes, r."""
+        return len(self.modes)
+
+    @property
+    def variance_ratio(self) -> Array:
+        """Each direction's share of the whole variance, (q,)."""
+        ratio: Array = self.variances / self.variances.sum()
+        return ratio
+
+    @property
+    def lower(self) -> Array:
+        """The least coordinate of the shapes along each mode, (r,)."""
+        lower: Array = self.coordinates.min(axis=0)
+        return lower
+
+    @property
+    def upper(self) -> Array:
+        """The largest coordinate of the shapes along each mode, (r,)."""
+        upper: Array = self.coordinates.max(axis=0)
+        return upper
+
+    def encode(self, points: Array) -> Array:
+        """Return normal coordinates (..., r) of shapes (..., n, 2), any representatives."""
+        logs = grassmann.log(self.mean, points)
+        t: Array = np.tensordot(logs, self.modes, axes=([-2, -1], [1, 2]))
+        return t
+
+    def tangent(self, t: Array) -> Array:
+        """Return the tangent vectors (..., n, 2) at the mean with coordinates t (..., r)."""
+        V: Array = np.tensordot(self._checked(t), self.modes, axes=1)
+        return V
+
+    def decode(self, t: Array) -> Array:
+        """Return the shapes (..., n, 2) of the learned manifold at coordinates t (..., r).
+
+        Raises
+        ------
+        SpaceError
+            If t has not one number a mode.
+        """
+        return grassmann.exp(self.mean, self.tangent(t))
+
+    def carried(self, t: Array, points: Array) -> Array:
+        """Carry tangents at the mean to shapes, by parallel transport.
+
+        Parameters
+        ----------
+        t : (k, r) array
+            Coordinates of the tangents.
+        points : (k, n, 2) array
+            Where to.
+
+        Returns
+        -------
+        (k, n, 2) array
+            Tangent vectors at the bases `points`, inner products kept.
+        """
+        return grassmann.transport(self.tangent(t), self.mean[None], points)
+
+    def sample(self, count: int, rng: np.random.Generator) -> Array:
+        """Draw coordinates (count, r), uniform in the smallest centred ellipsoid of the data.
+
+        Its axes lie along the modes, in the ratio of the standard deviations.
+        """
+        spread = np.sqrt(self.variances[: self.dimension])
+        reach = float(np.max(np.linalg.norm(self.coordinates / spread, axis=1)))
+        direction = rng.normal(size=(count, self.dimension))
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        radius = rng.uniform(size=(count, 1)) ** (1.0 / self.dimension)
+        drawn: Array = reach * radius * direction * spread
+        return drawn
+
+    def outside(self, t: Array) -> str | None:
+        """Say which of the coordinates t (..., r) leaves the data's range, or None."""
+        t = self._checked(t).reshape(-1, self.dimension)
+        low, high = t.min(axis=0), t.max(axis=0)
+        for k in range(self.dimension):
+            for value in (low[k], high[k]):
+                if not self.lower[k] <= value <= self.upper[k]:
+                    return (
+                        f"t{k + 1} = {value:g}, allowed is {self.lower[k]:.4g} to "
+                        f"{self.upper[k]:.4g}"
+                    )
+        return None
+
+    def _checked(self, t: Array) -> Array:
+        t = np.asarray(t, dtype=np.float64)
+        if t.ndim == 0 or t.shape[-1] != self.dimension:
+            given = t.shape[-1] if t.ndim else 1
+            raise SpaceError(f"t: got {given} coordinates, the space has {self.dimension}")
+        if not np.isfinite(t).all():
+            raise SpaceError("t: coordinates must be finite")
+        return t
+
+
+def _chunks(count: int) -> Iterator[slice]:
+    return (slice(first, first + CHUNK) for first in range(0, count, CHUNK))
+
+
+def _karcher_mean(points: Array) -> Array:
+    """Return the Karcher mean of many points, by gradient steps over chunks."""
+    mean = grassmann.align(points[0], np.linalg.qr(points[0]).Q)
+    length = np.inf
+    for _ in range(STEPS):
+        step = sum(
+            grassmann.log(mean[None], points[part]).sum(axis=0) for part in _chunks(len(points))
+        )
+        tangent = np.asarray(step) / len(points)
+        length = float(grassmann.norm(tangent))
+        if length <= TOLERANCE:
+            return mean
+        mean = np.linalg.qr(grassmann.exp(mean, tangent)).Q
+    raise GeometryError(
+        f"Karcher mean of {len(points)} shapes: not converged after {STEPS} steps: the mean "
+        f"tangent is {length:.1e} rad, allowed is {TOLERANCE:.1e}"
+    )
+
+
+def _horizontal(mean: Array, modes: Array) -> Array:
+    """Make modes horizontal at the mean and orthonormal, to rounding; fix their signs.
+
+    A mode's sign is free; its largest entry is made positive, so that fits can be compared.
+    """
+    horizontal = modes - mean @ (mean.T @ modes)
+    flat = horizontal.reshape(len(modes), -1)
+    Q, R = np.linalg.qr(flat.T)
+    flat = (Q * np.sign(np.diag(R))).T
+    largest = flat[np.arange(len(flat)), np.argmax(np.abs(flat), axis=1)]
+    signed: Array = (flat * np.sign(largest)[:, None]).reshape(modes.shape)
+    return signed

@@ -1,0 +1,77 @@
+"""Diagrams by matplotlib: what a shape space holds.  matplotlib is imported when first needed."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen import affine
+from bladegen.arrays import Array
+from bladegen.errors import ExportError
+from bladegen.pga import ShapeSpace
+
+__all__ = ["draw_space", "figure", "save_figure"]
+
+SUFFIXES = (".png", ".svg", ".pdf")
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe & Ito
+INK = "#22303c"
+
+
+def figure(rows: int, columns: int, *, width: float, height: float) -> tuple[Any, Any]:
+    """Return a matplotlib figure without any window, and its axes (rows, columns)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    drawn = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(drawn)
+    return drawn, drawn.subplots(rows, columns, squeeze=False)
+
+
+def save_figure(drawn: Any, path: Path) -> None:
+    """Write a figure in the format of its suffix.
+
+    Raises
+    ------
+    ExportError
+        If the suffix is none of PNG, SVG and PDF.
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        raise ExportError(f"{path}: suffix {path.suffix!r}, allowed are {', '.join(SUFFIXES)}")
+    drawn.savefig(path, dpi=150)
+
+
+def draw_space(space: ShapeSpace, path: Path) -> None:
+    """Draw a space's modes (mean, least and largest coordinate), spectrum and data."""
+    r = space.dimension
+    columns = max(2, r)
+    drawn, axes = figure(2, columns, width=3.4 * columns, height=6.4)
+    for k in range(r):
+        axis = axes[0, k]
+        for value, colour in ((space.lower[k], COLOURS[0]), (space.upper[k], COLOURS[1])):
+            t = np.zeros(r)
+            t[k] = value
+            axis.plot(*space.decode(t).T, color=colour, label=f"t = {value:.3f}")
+        axis.plot(*space.mean.T, color=INK, linewidth=0.8, label="mean")
+        axis.set_title(f"mode {k + 1}, standardised")
+        axis.legend(fontsize=7, loc="lower right")
+        axis.set_aspect("equal")
+    spectrum = axes[1, 0]
+    share = 100.0 * np.cumsum(space.variance_ratio[:20])
+    spectrum.plot(np.arange(1, len(share) + 1), share, "o-", color=COLOURS[0], markersize=3)
+    spectrum.set(xlabel="modes", ylabel="variance in sum, %", title="spectrum", ylim=(0, 102))
+    data = axes[1, 1]
+    shown = space.coordinates[:: max(1, len(space.coordinates) // 4000)]
+    second = 1 if r > 1 else 0
+    data.scatter(shown[:, 0], shown[:, second], s=2, color=COLOURS[0], alpha=0.4, linewidths=0)
+    data.set(xlabel="t1, rad", ylabel=f"t{second + 1}, rad", title="shapes learned from")
+    for axis in axes.flat:
+        if not axis.has_data():
+            axis.axis("off")
+    save_figure(drawn, path)
+
+
+def physical(points: Array, like: Array) -> Array:
+    """Return standardised shapes (k, n, 2) with the affine part of the airfoil `like` (n, 2)."""
+    X, M, b = affine.standardise(like)
+    U, _, Vt = np.linalg.svd(points.mT @ X)
+    return affine.restore(points @ (U @ Vt), M, b)

@@ -1,0 +1,79 @@
+"""What the command line prints: tables, figures, progress.  rich is imported when needed."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import typer
+
+__all__ = [
+    "print_figures",
+    "print_findings",
+    "print_space",
+    "print_summary",
+    "print_table",
+    "progress_bar",
+]
+
+
+@contextmanager
+def progress_bar() -> Iterator[Any]:
+    """Show what is being done and for how long, on a terminal."""
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    quiet = not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
+        task = bar.add_task("starting", total=None)
+        yield lambda message: bar.update(task, description=message)
+
+
+def print_summary(folder: Path, name: str) -> None:
+    """Print a report's main figures and the files."""
+    from bladegen.build import report_path
+    from bladegen.tables import report_rows
+
+    path = report_path(folder, name)
+    report = json.loads(path.read_text(encoding="utf-8"))
+    print_table(["figure", "measured"], report_rows(report), title=report["blade"])
+    rows = [[str(folder / f["name"]), f"{f['bytes'] / 1e6:.1f} MB"] for f in report["files"]]
+    rows.append([str(path), "all figures"])
+    print_table(["file", "size"], rows)
+    print_findings(report["figures"]["findings"])
+
+
+def print_space(space: Any) -> None:
+    """Print a shape space."""
+    from bladegen.tables import space_figures, space_rows
+
+    figures = space_figures(space)
+    shown = {key: figures[key] for key in ("about", "shapes", "landmarks", "modes")}
+    print_figures("shape space", shown)
+    print_table(["mode", "variance, %", "in sum, %", "least t", "largest t"], space_rows(space))
+
+
+def print_figures(title: str, figures: dict[str, Any]) -> None:
+    from bladegen.tables import shown
+
+    rows = [[key.replace("_", " "), shown(value)] for key, value in figures.items()]
+    print_table(["figure", "value"], rows, title=title)
+
+
+def print_findings(findings: list[str]) -> None:
+    for finding in findings:
+        typer.echo(f"note: {finding}")
+
+
+def print_table(columns: list[str], rows: list[list[str]], title: str | None = None) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(*columns, title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table, markup=False, highlight=False)

@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench clean
+.PHONY: help demo lint test bench clean
 
 help: ## show this
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -8,11 +8,13 @@ demo: ## set up and build the IEA 15 MW blade into out/
 	@./scripts/setup.sh
 	.venv/bin/bladegen build iea15mw -o out/
 
-test: ## set up, lint, check types and run all tests
+lint: ## set up, lint and check types
 	@./scripts/setup.sh test
 	.venv/bin/ruff check
 	.venv/bin/ruff format --check
 	.venv/bin/mypy
+
+test: lint ## the same, then run all tests
 	.venv/bin/python -m pytest -n 2 --cov --cov-report=term --cov-fail-under=95
 
 bench: ## print the measured figures

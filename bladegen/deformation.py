@@ -229,21 +229,22 @@ class AffineChange:
     def applied(self, definition: BladeDefinition, window: Window) -> BladeDefinition:
         """Return a definition with chord, twist, offsets and axis changed.
 
-        A windowed factor is put on grids that resolve the window; offsets in metres follow the
-        chord.
+        Between grid points the change is that of the window, exactly; offsets in metres follow
+        the chord.
         """
 
-        def scaled(quantity: Distribution, factor: float, whole: float = 1.0) -> Distribution:
-            if factor == 1.0 and whole == 1.0:
+        def scaled(
+            quantity: Distribution, factor: float, whole: float = 1.0, shift: float = 0.0
+        ) -> Distribution:
+            if whole != 1.0:
+                quantity = replace(quantity, values=whole * quantity.values)
+            if factor == 1.0 and shift == 0.0:
                 return quantity
-            grid = quantity.grid if factor == 1.0 else window.with_ramp(quantity.grid)
-            values = quantity(grid) * whole * (1.0 + window(grid) * (factor - 1.0))
-            return replace(quantity, grid=grid, values=values)
+            faded = Faded(quantity, window, factor, shift)
+            grid = window.with_ramp(quantity.grid)
+            return replace(quantity, grid=grid, values=faded(grid), spline=faded.as_spline)
 
-        twist = scaled(definition.twist, 1.0, self.twist_scale)
-        if self.twist:
-            grid = window.with_ramp(twist.grid)
-            twist = replace(twist, grid=grid, values=twist(grid) + window(grid) * self.twist)
+        twist = scaled(definition.twist, 1.0, self.twist_scale, self.twist)
         offset = definition.section_offset_y
         axis = definition.axis
         return replace(
@@ -255,6 +256,28 @@ class AffineChange:
             else scaled(offset, self._widening, self.chord_scale),
             axis=ReferenceAxis(scaled(axis.x, 1.0, self.prebend_scale), axis.y, axis.z),
         )
+
+
+@dataclass(frozen=True, eq=False)
+class Faded:
+    """A distribution times a factor, plus a shift, both faded in by a window."""
+
+    base: Distribution
+    window: Window
+    factor: float
+    shift: float
+
+    def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
+        """Return the quantity at span fractions; derivatives are not needed and not there."""
+        if nu:
+            raise PerturbationError("derivatives of a windowed distribution are not defined")
+        at = np.asarray(eta, dtype=np.float64)
+        weight = self.window(at)
+        return self.base(at) * (1.0 + weight * (self.factor - 1.0)) + weight * self.shift
+
+    def as_spline(self, _grid: Array, _values: Array) -> "Faded":
+        """Stand in for the spline through a grid of its values."""
+        return self
 
 
 @dataclass(frozen=True)

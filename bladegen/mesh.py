@@ -145,12 +145,35 @@ def _cap(points: Array, row: Indices) -> Indices:
 
 
 def _welded(points: Array, faces: Indices, grid: Indices) -> tuple[Array, Indices]:
-    """Join the two ends of sharp sections, drop collapsed triangles and unused vertices."""
-    sharp = np.linalg.norm(points[grid[:, 0]] - points[grid[:, -1]], axis=1) <= SAME_POINT
-    target = np.arange(len(points))
-    target[grid[sharp, -1]] = grid[sharp, 0]
-    faces = target[faces]
+    """Join neighbours that coincide, drop collapsed triangles and unused vertices."""
+    faces = _merged(points, grid)[faces]
     a, b, c = faces.T
     faces = faces[(a != b) & (b != c) & (c != a)]
     used, faces = np.unique(faces, return_inverse=True)
     return points[used], faces.reshape(-1, 3)
+
+
+def _merged(points: Array, grid: Indices) -> Indices:
+    """Return the vertex that stands for each point: the first of those that coincide.
+
+    Sides are joined across the blade at its trailing edge and at its end sections only;
+    elsewhere the edges between two such places would belong to four triangles.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    ends, half = grid[[0, -1]], grid.shape[1] // 2
+    neighbours = (
+        (grid[:, 1:], grid[:, :-1]),
+        (grid[1:], grid[:-1]),
+        (grid[:, 0], grid[:, -1]),
+        (ends[:, :half], ends[:, :half:-1]),
+    )
+    a, b = (np.concatenate([pair[i].reshape(-1) for pair in neighbours]) for i in range(2))
+    same = np.linalg.norm(points[a] - points[b], axis=1) <= SAME_POINT
+    joined = coo_array(
+        (np.ones(np.count_nonzero(same)), (a[same], b[same])), shape=(len(points), len(points))
+    )
+    _, group = connected_components(joined, directed=False)
+    _, first = np.unique(group, return_index=True)
+    return np.asarray(first[group], dtype=np.int64)

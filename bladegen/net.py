@@ -20,6 +20,7 @@ DEGREE = 3
 FIRST_SECTIONS = 120
 MAX_SECTIONS = 360  # keeps a STEP file of 401 landmarks below 15 MB
 REFINEMENTS = 8
+MENDINGS = 6  # single sections that may be added where the final measurement is over
 MAXIMUM_SHARE = 0.5  # of the tolerance may be spent between sections at most
 RMS_SHARE = 0.08  # and in the mean; the rest is left to what lies between landmarks
 
@@ -185,7 +186,15 @@ def fitted(
         if not split.any() or len(v) + np.count_nonzero(split) > MAX_SECTIONS:
             break
         v = np.sort(np.concatenate([v, middles[split]]))
-    return net, deviation(net, blade)
+    measured = deviation(net, blade)
+    for _ in range(MENDINGS):
+        if sections is not None or measured.maximum <= tolerance or len(v) >= MAX_SECTIONS:
+            break
+        i = int(np.clip(np.searchsorted(v, measured.eta), 1, len(v) - 1))
+        v = np.sort(np.append(v, 0.5 * (v[i - 1] + v[i])))
+        net = fit(blade.sections(v), blade.u, v)
+        measured = deviation(net, blade)
+    return net, measured
 
 
 def deviation(net: SurfaceNet, blade: Blade) -> Deviation:

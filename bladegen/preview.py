@@ -31,6 +31,8 @@ VIEW, STRIP = 0.54, 0.23  # shares of a figure's height
 VIEW_ANGLE = 30.0  # degrees, VTK's own
 FILLED = 0.92  # of a view's width or height
 EDGE_ANGLE = 40.0  # degrees between facets that are shaded as an edge
+EGL_PLATFORM_DEVICE = 0x313F  # EGL_EXT_platform_device
+EGL_DEVICES = 32  # more than any machine has
 BLANK = 2.0  # grey levels of standard deviation below which a picture is empty
 NO_RENDERER = (
     "no picture: this machine has no OpenGL to render with; on Debian: apt-get install "
@@ -41,24 +43,58 @@ NO_RENDERER = (
 def require_renderer() -> None:
     """Raise `RenderError` if there is nothing to render with.
 
-    VTK falls back from a display to EGL and OSMesa, and gives blank pictures and warnings,
-    or ends the process, where it finds none of them.
+    VTK takes the display, else EGL, else OSMesa, and where none of them works it ends the
+    process.  So each is tried: libraries that load may still have no driver behind them.
     """
     if sys.platform != "linux":
         return
-    found = any(
-        _loads(name) for name in ("libEGL.so.1", "libOSMesa.so.8", "libOSMesa.so.6")
-    ) or bool(os.environ.get("DISPLAY"))
-    if not (found and _loads("libGL.so.1")):
+    if not (_load("libGL.so.1") and (_egl_starts() or _display_opens() or _osmesa_loads())):
         raise RenderError(NO_RENDERER)
 
 
-def _loads(library: str) -> bool:
+def _load(library: str) -> ctypes.CDLL | None:
     try:
-        ctypes.CDLL(library)
+        return ctypes.CDLL(library)
     except OSError:
+        return None
+
+
+def _egl_starts() -> bool:
+    """Tell whether any EGL device can be initialised."""
+    egl = _load("libEGL.so.1")
+    if egl is None:
         return False
-    return True
+    pointer, many = ctypes.c_void_p, EGL_DEVICES
+    address = egl.eglGetProcAddress
+    address.argtypes, address.restype = [ctypes.c_char_p], pointer
+    query, display_of = address(b"eglQueryDevicesEXT"), address(b"eglGetPlatformDisplayEXT")
+    if not (query and display_of):
+        return False
+    devices, count = (pointer * many)(), ctypes.c_int(0)
+    prototype = ctypes.CFUNCTYPE(ctypes.c_uint, ctypes.c_int, pointer, pointer)
+    if not prototype(query)(many, devices, ctypes.addressof(count)):
+        return False
+    open_display = ctypes.CFUNCTYPE(pointer, ctypes.c_uint, pointer, pointer)(display_of)
+    egl.eglInitialize.argtypes = [pointer] * 3
+    displays = [open_display(EGL_PLATFORM_DEVICE, devices[i], None) for i in range(count.value)]
+    return any(display and egl.eglInitialize(display, None, None) for display in displays)
+
+
+def _display_opens() -> bool:
+    """Tell whether an X server answers; DISPLAY alone may be left over from another session."""
+    x11 = _load("libX11.so.6") if os.environ.get("DISPLAY") else None
+    if x11 is None:
+        return False
+    x11.XOpenDisplay.argtypes, x11.XOpenDisplay.restype = [ctypes.c_char_p], ctypes.c_void_p
+    x11.XCloseDisplay.argtypes = [ctypes.c_void_p]
+    display = x11.XOpenDisplay(None)
+    if display:
+        x11.XCloseDisplay(display)
+    return bool(display)
+
+
+def _osmesa_loads() -> bool:
+    return any(_load(name) for name in ("libOSMesa.so.8", "libOSMesa.so.6"))
 
 
 def picture(blade: Blade, path: Path, *, size: tuple[int, int] = SIZE) -> None:
@@ -84,9 +120,7 @@ def picture(blade: Blade, path: Path, *, size: tuple[int, int] = SIZE) -> None:
 def show(blade: Blade) -> None:
     """Open an interactive window and wait until it is closed."""
     require_renderer()
-    if sys.platform == "linux" and not any(
-        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY")
-    ):
+    if sys.platform == "linux" and not (_display_opens() or os.environ.get("WAYLAND_DISPLAY")):
         raise RenderError("no window: there is no display here; use --screenshot FILE.png")
     plotter = _scene(blade, off_screen=False)
     plotter.show(title=f"bladegen - {blade.name}")
@@ -294,11 +328,13 @@ def _caption(blade: Blade) -> str:
 @contextmanager
 def _quietly() -> Iterator[None]:
     """Keep VTK's warnings off the terminal; what matters is checked."""
-    from vtkmodules.vtkCommonCore import vtkObject
+    from vtkmodules.vtkCommonCore import vtkLogger, vtkObject
 
-    before = vtkObject.GetGlobalWarningDisplay()
+    before, level = vtkObject.GetGlobalWarningDisplay(), vtkLogger.GetCurrentVerbosityCutoff()
     vtkObject.GlobalWarningDisplayOff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
     try:
         yield
     finally:
+        vtkLogger.SetStderrVerbosity(vtkLogger.ConvertToVerbosity(level))
         vtkObject.SetGlobalWarningDisplay(before)

@@ -14,15 +14,16 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.arrays import Array, Indices
+from bladegen.arrays import Array, Indices, Mask
 
 __all__ = ["SectionCurves", "SectionSplines"]
 
 PARAMETER_TOLERANCE = 1e-6  # of u, before the last step; a maximum is off by its square
 ITERATIONS = 60  # bisection alone needs 40
+SETTLED = 1e-13  # change of a map that ends its iteration
 SAME_NOSE = 3  # landmarks; nearer peaks are one nose
 RIVAL = 1e-3  # of the squared distance; peaks at landmarks lower than this are of no concern
-AMBIGUOUS = 2e-6  # of a chord; noses whose distances differ by less share the leading edge
+AMBIGUOUS = 2e-5  # of a chord; noses whose distances differ by less share the leading edge
 WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
 
 
@@ -82,6 +83,19 @@ class SectionSplines:
         A, c : (k, 2, 2), (k, 2) arrays
             ``points @ A + c`` has unit chord and the thickness.
         """
+        A, c, rivals = self._step(points, relative_thickness)
+        rows = np.flatnonzero(rivals)  # with two noses, stretching moves the leading edge
+        for _ in range(ITERATIONS):
+            if not rows.size:
+                break
+            wanted = None if relative_thickness is None else relative_thickness[rows]
+            B, d, _ = self._step(points[rows] @ A[rows] + c[rows][:, None], wanted)
+            A[rows], c[rows] = A[rows] @ B, (c[rows][:, None] @ B)[:, 0] + d
+            rows = rows[np.abs(B - np.eye(2)).max(axis=(1, 2)) > SETTLED]
+        return A, c
+
+    def _step(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array, Mask]:
+        """Return the maps of `normalising`, exact but where a section has two noses, and where."""
         curves = self.fit(points)
         nose, edge = curves.leading_edge, curves.trailing_edge
         length = np.linalg.norm(edge - nose, axis=-1)
@@ -97,7 +111,7 @@ class SectionSplines:
         lift = (stretch - 1.0)[:, None, None] * normal[:, :, None] * normal[:, None, :]
         scale = 1.0 / chord
         shift = -(nose[:, None] @ lift)[:, 0] * scale[:, None]
-        return scale[:, None, None] * (np.eye(2) + lift), shift
+        return scale[:, None, None] * (np.eye(2) + lift), shift, curves.has_rivals
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +177,14 @@ class SectionCurves:
         other = np.where(peaks.any(axis=1), other, best)
         farthest = self._peak(best + first)
         return farthest, farthest if np.array_equal(other, best) else self._peak(other + first)
+
+    @property
+    def has_rivals(self) -> Mask:
+        """Which sections have another nose that shares in the leading edge, (k,)."""
+        one, two = self._noses
+        near = np.abs(self._reach(one) - self._reach(two)) < 2.0 * AMBIGUOUS
+        rivals: Mask = near & np.any(one != two, axis=-1)
+        return rivals
 
     @cached_property
     def leading_edge(self) -> Array:

@@ -15,7 +15,7 @@ find_python() {
     local name
     for name in "${PYTHON:-}" python3.13 python3.12 python3.11 python3; do
         if [ -n "$name" ] && command -v "$name" >/dev/null 2>&1 &&
-            "$name" -c 'import sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null; then
+            "$name" -c 'import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null; then
             command -v "$name"
             return
         fi
@@ -72,7 +72,8 @@ install_libraries() {
 
 python="$(find_python)"
 install_libraries "$python"
-[ -x .venv/bin/python ] || "$python" -m venv .venv
+# pip comes last: without it an earlier run was broken off
+[ -x .venv/bin/pip ] || "$python" -m venv --clear .venv
 stamp=".venv/.bladegen-${extra:-plain}"
 if [ ! -f "$stamp" ] || [ pyproject.toml -nt "$stamp" ]; then
     printf 'setup: installing bladegen into .venv (about two minutes and 2 GB)\n'

@@ -157,3 +157,80 @@ def test_an_interrupt_is_said_shortly(monkeypatch, capsys):
     with pytest.raises(SystemExit, match="130"):
         cli.main()
     assert capsys.readouterr().err == "bladegen: interrupted\n"
+
+
+def test_perturb_builds_a_variant_and_says_what_was_changed(tmp_path):
+    result = run(
+        "perturb", "nrel5mw", "-o", tmp_path, "--pga", "0.03,-0.02,0.01,0", "--thickness", 1.05,
+        "--twist", 1, "--window", "0.05,0.2", "--format", "stl",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    report = json.loads((tmp_path / "nrel5mw-perturbed.report.json").read_text())
+    (changes,) = report["changes"]
+    assert changes["pga"] == [[0.03, -0.02, 0.01, 0.0]]
+    assert changes["thickness"] == 1.05
+    assert changes["twist"] == pytest.approx(0.0174533)
+    assert changes["window"] == [0.05, 0.2]
+    assert (tmp_path / "nrel5mw-perturbed.stl").exists()
+
+
+def test_perturb_by_affine_parameters_alone_and_names(tmp_path):
+    result = run(
+        "perturb", "nrel5mw", "-o", tmp_path, "--chord-scale", 1.1, "--name", "../wide",
+        "--format", "ply", "--landmarks", 101,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    assert {path.name for path in tmp_path.iterdir()} == {"wide.ply", "wide.report.json"}
+
+
+def test_perturb_beyond_the_bounds_ends_with_1(tmp_path):
+    done = main("perturb", "nrel5mw", "-o", tmp_path, "--pga", "0.9,0,0,0")
+    assert done.returncode == 1
+    assert "t1 = 0.9, allowed is" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_space_commands(tmp_path):
+    space = tmp_path / "space.npz"
+    result = run("space", "build", "-o", space, "--count", 10, "--landmarks", 101, "--modes", 2)
+    assert result.exit_code == 0, result.output
+    assert "NACA64_A17" in result.output
+    figures = json.loads(run("space", "info", space, "--json").output)
+    assert figures["shapes"] == 160
+    assert figures["modes"] == 2
+    assert "16000" in run("space", "info").output
+    for suffix in ("png", "svg"):
+        picture = tmp_path / f"space.{suffix}"
+        assert run("space", "plot", space, "-o", picture).exit_code == 0
+        assert picture.stat().st_size > 10_000
+    assert isinstance(run("space", "plot", "-o", tmp_path / "a.doc").exception, BladegenError)
+    result = run(
+        "perturb", "nrel5mw", "-o", tmp_path, "--space", space, "--pga", "0.01,0",
+        "--landmarks", 101, "--format", "stl",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+
+
+def test_a_space_from_a_folder_of_airfoils(tmp_path):
+    import numpy as np
+
+    from strategies import naca
+
+    folder = tmp_path / "airfoils"
+    folder.mkdir()
+    for i, thickness in enumerate((0.12, 0.15, 0.18, 0.21)):
+        rows = "\n".join(f"{x:.6f} {y:.6f}" for x, y in naca(thickness, 0.01 * i, 0.002))
+        (folder / f"foil{i}.dat").write_text(f"FOIL {i}\n{rows}\n")
+    out = tmp_path / "own.npz"
+    command = ["space", "build", "-o", out, "--airfoils", folder, "--count", 0, "--modes", 2]
+    assert run(*command).exit_code == 0
+    (folder / "broken.dat").write_text("nothing here")
+    refused = run(*command)
+    assert isinstance(refused.exception, BladegenError)
+    assert "--skip-unusable" in str(refused.exception)
+    assert run(*command, "--skip-unusable").exit_code == 0
+    assert len(np.load(out)["coordinates"]) == 4
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    nothing = run("space", "build", "-o", out, "--airfoils", empty)
+    assert "holds no airfoil files" in str(nothing.exception)

@@ -33,6 +33,14 @@ def euler_characteristic(made):
     return len(made.vertices) - edges + len(made.faces)
 
 
+def least_height(made):
+    """The smallest height of any triangle over its longest side."""
+    corners = made.vertices[made.faces]
+    sides = np.roll(corners, -1, axis=1) - corners
+    longest = np.linalg.norm(sides, axis=2).max(axis=1)
+    return np.min(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / longest)
+
+
 @given(definitions(), st.sampled_from([AsGiven(), Sharp(), MinimumThickness(0.01)]))
 def test_blades_of_any_edge_are_closed_and_face_outward(definition, edge):
     blade = Blade.from_definition(definition, landmarks=51, trailing_edge=edge)
@@ -72,6 +80,61 @@ def test_sharp_and_blunt_in_one_blade():
     assert edges_are_shared_by_two(made.faces)
     assert euler_characteristic(made) == 2
     assert len(made.vertices) == 5 * 51 - 3
+
+
+def pointed(sections):
+    sections[-1] = sections[-1].mean(axis=0)
+
+
+def knife_edged(sections):
+    sections[-1, :26] = sections[-1, 25:][::-1]
+
+
+def with_a_landmark_twice(sections):
+    sections[:, 10] = sections[:, 9]
+
+
+def with_a_landmark_twice_in_one_section(sections):
+    sections[2, 10] = sections[2, 9]
+
+
+def with_a_section_twice(sections):
+    sections[3] = sections[2]
+
+
+def with_all_of_it(sections):
+    sections[:2] = sections[0].mean(axis=0)
+    sections[3, 20:24] = sections[3, 20]
+    sections[-2:] = sections[-1]
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        pointed,
+        knife_edged,
+        with_a_landmark_twice,
+        with_a_landmark_twice_in_one_section,
+        with_a_section_twice,
+        with_all_of_it,
+    ],
+)
+@pytest.mark.parametrize("gap", [0, 2])
+def test_landmarks_that_coincide_leave_no_degenerate_triangle(spoil, gap):
+    sections = cylinder(n=51, k=7, gap=gap).copy()
+    spoil(sections)
+    made = mesh.surface(sections)
+    assert edges_are_shared_by_two(made.faces)
+    assert euler_characteristic(made) == 2
+    assert made.volume > 0
+    assert least_height(made) > 1e-6
+
+
+@pytest.mark.parametrize("name", bundled())
+@pytest.mark.parametrize("edge", [AsGiven(), Sharp(), MinimumThickness(0.002)])
+def test_blades_have_no_degenerate_triangle(name, edge):
+    blade = Blade.from_definition(read(name), trailing_edge=edge)
+    assert least_height(mesh.from_blade(blade)) > mesh.SAME_POINT
 
 
 def test_the_default_is_a_quarter_of_a_million_triangles():

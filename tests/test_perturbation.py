@@ -1,0 +1,228 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+import bladegen as bg
+from bladegen import affine, grassmann
+from bladegen.deformation import AffineChange
+from bladegen.errors import PerturbationError
+from strategies import definitions
+
+SPACE = bg.ShapeSpace.bundled()
+T = np.array([0.05, -0.04, 0.03, 0.02])
+SPANS = np.linspace(0, 1, 31)
+NAMES = pytest.mark.parametrize("name", bg.bundled())
+SMALL = st.lists(st.floats(-0.3, 0.3), min_size=4, max_size=4)
+
+
+@pytest.fixture(scope="module")
+def blades():
+    return {name: bg.Blade.from_definition(bg.read(name)) for name in bg.bundled()}
+
+
+@NAMES
+def test_by_coordinates_alone_chord_twist_and_thickness_stay(blades, name):
+    blade = blades[name]
+    variant = blade.perturbed(SPACE, T)
+    assert_allclose(variant.chord(SPANS), blade.chord(SPANS), atol=0)
+    assert_allclose(variant.twist(SPANS), blade.twist(SPANS), atol=0)
+    assert_allclose(variant.relative_thickness(SPANS), blade.relative_thickness(SPANS), atol=1e-9)
+    curves = variant._splines.fit(variant.profiles(SPANS))
+    assert_allclose(curves.chord, 1.0, atol=1e-9)
+    assert_allclose(variant.M, blade.M, atol=0)
+    assert np.abs(variant.profiles(SPANS) - blade.profiles(SPANS)).max() > 5e-3
+
+
+@NAMES
+def test_the_tangent_is_carried_to_every_station(blades, name):
+    blade = blades[name]
+    variant = blade.perturbed(SPACE, T, window=bg.Window())
+    steps = grassmann.log(blade.points, variant.points)
+    carried = SPACE.carried(np.broadcast_to(T, (len(blade.eta), 4)), blade.points)
+    assert_allclose(steps, carried, atol=1e-9)
+    assert_allclose(grassmann.norm(steps), np.linalg.norm(T), atol=1e-9)
+    back = np.stack(
+        [grassmann.transport(v, X, SPACE.mean) for v, X in zip(steps, blade.points, strict=True)]
+    )
+    coordinates = np.tensordot(back, SPACE.modes, axes=([1, 2], [1, 2]))
+    assert_allclose(coordinates, np.broadcast_to(T, coordinates.shape), atol=1e-9)
+
+
+@NAMES
+def test_round_roots_stay_round(blades, name):
+    blade = blades[name]
+    variant = blade.perturbed(SPACE, T, thickness=1.1, chord=1.05)
+    root = np.linspace(0, blade.eta[1], 7)
+    assert_allclose(variant.profiles(root), blade.profiles(root), atol=1e-12)
+    assert_allclose(variant.chord(root), blade.chord(root), atol=1e-12)
+
+
+@NAMES
+def test_zero_changes_nothing(blades, name):
+    blade = blades[name]
+    same = blade.perturbed(SPACE, np.zeros(4))
+    assert_allclose(same.sections(SPANS), blade.sections(SPANS), atol=1e-12)
+
+
+def test_representatives_do_not_matter(blades):
+    blade = blades["nrel5mw"]
+    angle = np.linspace(-3, 3, len(blade.eta))
+    turns = affine.twist(angle)
+    turned = replace(blade, representatives=blade.representatives @ turns, M=turns.mT @ blade.M)
+    assert_allclose(
+        turned.perturbed(SPACE, T).profiles(SPANS),
+        blade.perturbed(SPACE, T).profiles(SPANS),
+        atol=1e-9,
+    )
+
+
+def test_a_dent_stays_where_it_is_put(blades):
+    blade = blades["iea15mw"]
+    dent = bg.Coordinates([0.5, 0.6, 0.7], [[0, 0, 0, 0], T, [0, 0, 0, 0]])
+    variant = blade.perturbed(SPACE, dent)
+    moved = np.abs(variant.profiles(SPANS) - blade.profiles(SPANS)).max(axis=(1, 2))
+    assert np.all(moved[(SPANS <= 0.5) | (SPANS >= 0.7)] < 1e-10)
+    assert moved[np.abs(SPANS - 0.6) < 0.02].min() > 1e-3
+
+
+def test_without_a_distribution_the_thickness_stays_too(blades):
+    definition = replace(blades["nrel5mw"].definition, relative_thickness=None)
+    blade = bg.Blade.from_definition(definition)
+    variant = blade.perturbed(SPACE, T)
+    assert_allclose(variant.relative_thickness(SPANS), blade.relative_thickness(SPANS), atol=1e-9)
+    thicker = blade.perturbed(thickness=1.1)
+    assert_allclose(
+        thicker.relative_thickness([0.3, 1.0]),
+        1.1 * blade.relative_thickness([0.3, 1.0]),
+        atol=1e-9,
+    )
+
+
+@settings(max_examples=10)
+@given(definitions(), st.floats(0.9, 1.1), st.floats(0.9, 1.1), st.floats(0.9, 1.1))
+def test_affine_parameters_do_what_their_maps_do(definition, thickness, camber, chord):
+    blade = bg.Blade.from_definition(definition, landmarks=101)
+    variant = blade.perturbed(thickness=thickness, camber=camber, chord=chord, window=bg.Window())
+    maps = affine.thickness(np.array(thickness)) @ affine.chord(np.array(chord))
+    maps = maps @ affine.camber(np.array(camber / 2))
+    width, height = np.diag(maps)
+    assert_allclose(variant.chord(SPANS), width * blade.chord(SPANS), rtol=1e-12)
+    ratio = variant.relative_thickness(SPANS) / blade.relative_thickness(SPANS)
+    assert_allclose(ratio, height / width, rtol=1e-8)
+    shapes = [affine.standardise(b.profiles(SPANS))[0] for b in (variant, blade)]
+    assert np.max(grassmann.distance(*shapes)) < 1e-7
+
+
+@given(st.floats(-0.2, 0.2), st.floats(0.5, 1.5), st.floats(0.5, 1.5), st.floats(0.5, 1.5))
+@settings(max_examples=10)
+def test_twist_and_scalings_act_on_the_distributions(twist, chords, twists, bend):
+    blade = bg.Blade.from_definition(bg.read("iea15mw"), landmarks=51)
+    variant = blade.perturbed(
+        twist=twist, chord_scale=chords, twist_scale=twists, prebend_scale=bend, window=bg.Window()
+    )
+    eta = blade.definition.twist.grid
+    assert_allclose(variant.twist(eta), twists * blade.twist(eta) + twist, atol=1e-12)
+    assert_allclose(variant.chord(SPANS), chords * blade.chord(SPANS), rtol=1e-9)
+    assert_allclose(variant.axis(SPANS)[:, 0], bend * blade.axis(SPANS)[:, 0], atol=1e-12)
+    offset = variant.definition.offset_y(SPANS) / blade.definition.offset_y(SPANS)
+    assert_allclose(offset, chords, rtol=1e-9)
+
+
+def test_a_perturbed_blade_is_a_blade_like_any_other(blades, tmp_path):
+    from bladegen import cad, checks
+
+    variant = blades["iea15mw"].perturbed(SPACE, T, thickness=1.05, name="variant")
+    assert variant.name == "variant"
+    assert variant.changes[0]["thickness"] == 1.05
+    assert variant.changes[0]["pga"] == [T.tolist()]
+    check = checks.check_blade(variant)
+    assert check.problems == ()
+    assert check.figures["thickness_error"] < 1e-9
+    assert check.figures["stations_missed_by_chord"] < 1e-9
+    solid = cad.solid(variant)
+    assert solid.deviation.maximum < 0.3e-3
+    again = variant.perturbed(twist_scale=1.1)
+    assert len(again.changes) == 2
+    assert_allclose(again.profiles(SPANS), variant.profiles(SPANS), atol=1e-12)
+
+
+def test_the_baseline_is_left_untouched(blades):
+    blade = blades["nrel5mw"]
+    before = blade.sections(SPANS)
+    blade.perturbed(SPACE, T, thickness=1.2, twist=0.1)
+    assert np.array_equal(blade.sections(SPANS), before)
+
+
+def test_bounds_are_kept_unless_extrapolation_is_asked_for(blades):
+    blade = blades["nrel5mw"]
+    beyond = [SPACE.upper[0] + 0.02, 0, 0, 0]
+    with pytest.raises(PerturbationError, match=r"t1 = .*, allowed is .*extrapolation"):
+        blade.perturbed(SPACE, beyond)
+    assert blade.perturbed(SPACE, beyond, allow_extrapolation=True).deformations
+
+
+def test_sections_that_cross_are_named_with_station_and_parameter(blades):
+    with pytest.raises(PerturbationError, match=r"eta = 0\.\d+ \(near .* at .*\) .* with pga = "):
+        blades["nrel5mw"].perturbed(SPACE, [1.2, 0.9, 0.5, 0.7], allow_extrapolation=True)
+
+
+def test_deformations_that_eat_the_thickness_are_named(blades, monkeypatch):
+    monkeypatch.setattr("bladegen.perturbation.LOST_THICKNESS", 1.5)
+    monkeypatch.setattr("bladegen.perturbation.crossing_sections", lambda _: [])
+    with pytest.raises(PerturbationError, match="loses its thickness with pga"):
+        blades["nrel5mw"].perturbed(SPACE, -np.array([0.1, 0.1, 0.0, 0.0]))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"thickness": 0.0}, "thickness: got 0, allowed is 0.2 to 5"),
+        ({"camber": 2.0}, "camber: got 2, allowed is 0.2 to 1.8"),
+        ({"chord": -1.0}, "chord: got -1"),
+        ({"twist": 2.0}, "twist: got 2"),
+        ({"prebend_scale": float("nan")}, "prebend_scale: got nan"),
+        ({"t": [0.1]}, "coordinates need a shape space"),
+        ({"space": SPACE, "t": [0.1]}, "got 1 coordinates, the space has 4"),
+    ],
+)
+def test_wrong_values_are_refused(blades, options, message):
+    with pytest.raises(bg.BladegenError, match=message):
+        blades["nrel5mw"].perturbed(**options)
+
+
+def test_a_space_of_other_landmarks_is_refused():
+    coarse = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
+    with pytest.raises(PerturbationError, match="of 401 landmarks, the blade of 101"):
+        coarse.perturbed(SPACE, T)
+
+
+def test_windows():
+    window = bg.Window(0.2, 0.4)
+    assert_allclose(window(np.array([0.0, 0.2, 0.3, 0.4, 1.0])), [0, 0, 0.5, 1, 1])
+    assert_allclose(bg.Window()(SPANS), 1.0)
+    assert_allclose(bg.Window(0.5, 0.5)(np.array([0.4, 0.6])), [0, 1])
+    stations = bg.read("iea15mw").stations
+    assert bg.Window.beyond_circles(stations) == bg.Window(0.02, 0.15)
+    assert bg.Window.beyond_circles(stations[2:]) == bg.Window()
+    assert bg.Window.beyond_circles(stations[:2]) == bg.Window(0.0, 0.02)
+    for start, end in ((0.5, 0.4), (-0.1, 0.2), (0.5, 1.1)):
+        with pytest.raises(PerturbationError, match="must rise within 0 to 1"):
+            bg.Window(start, end)
+
+
+@pytest.mark.parametrize(
+    ("grid", "values"),
+    [([0.5, 0.4], [[0.0], [0.0]]), ([0.0, 2.0], [[0.0], [0.0]]), ([0.0], [[0.0], [1.0]]), ([], [])],
+)
+def test_wrong_coordinates_over_span_are_refused(grid, values):
+    with pytest.raises(PerturbationError, match="coordinates over span"):
+        bg.Coordinates(grid, values)
+
+
+def test_identity_parameters_are_not_reported():
+    assert AffineChange().changed() == {}
+    assert AffineChange(thickness=1.1).changed() == {"thickness": 1.1}

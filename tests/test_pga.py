@@ -1,0 +1,170 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from bladegen import grassmann
+from bladegen.errors import GeometryError, SpaceError
+from bladegen.pga import ShapeSpace
+from strategies import SEEDS, random_points, random_tangent
+
+
+def cloud(seed, count=60, n=21, r=3, noise=0.0):
+    """Shapes on an r-dimensional geodesic submanifold, in any representatives."""
+    rng = np.random.default_rng([5, seed])
+    base = random_points(rng, 1, n)[0]
+    directions = np.linalg.qr(
+        random_tangent(rng, np.stack([base] * r), 1.0).reshape(r, -1).T
+    ).Q.T.reshape(r, n, 2)
+    t = rng.normal(size=(count, r)) * [0.2, 0.1, 0.05][:r]
+    tangents = np.tensordot(t, directions, axes=1)
+    tangents += noise * random_tangent(rng, np.stack([base] * count), 1.0)
+    turns = np.linalg.qr(rng.normal(size=(count, 2, 2))).Q
+    return grassmann.exp(base, tangents) @ turns
+
+
+@given(SEEDS)
+def test_modes_are_orthonormal_and_horizontal(seed):
+    space = ShapeSpace.fit(cloud(seed), modes=3)
+    flat = space.modes.reshape(3, -1)
+    assert_allclose(flat @ flat.T, np.eye(3), atol=1e-12)
+    assert_allclose(space.mean.T @ space.modes, 0, atol=1e-12)
+    assert_allclose(space.mean.T @ space.mean, np.eye(2), atol=1e-13)
+
+
+@given(SEEDS)
+def test_decode_of_encode_returns_shapes_of_the_manifold(seed):
+    space = ShapeSpace.fit(cloud(seed, noise=0.01), modes=3)
+    learned = space.decode(space.coordinates[:7])
+    again = space.decode(space.encode(learned))
+    assert np.max(grassmann.distance(learned, again)) < 1e-9
+    assert_allclose(space.encode(space.mean), 0, atol=1e-14)
+
+
+@given(SEEDS)
+def test_coordinates_do_not_depend_on_representatives(seed):
+    points = cloud(seed)
+    turns = np.linalg.qr(np.random.default_rng(seed).normal(size=(len(points), 2, 2))).Q
+    space = ShapeSpace.fit(points, modes=2)
+    assert_allclose(space.encode(points @ turns), space.coordinates, atol=1e-12)
+    other = ShapeSpace.fit(points @ turns, modes=2)
+    assert_allclose(other.variances[:2], space.variances[:2], rtol=1e-8)
+    assert grassmann.distance(other.mean, space.mean) < 1e-9
+
+
+@given(SEEDS)
+def test_variances_are_those_of_the_coordinates(seed):
+    points = cloud(seed)
+    space = ShapeSpace.fit(points, modes=3)
+    covariance = space.coordinates.T @ space.coordinates / len(points)
+    assert_allclose(covariance, np.diag(space.variances[:3]), atol=1e-12)
+    assert np.all(np.diff(space.variances) <= 1e-15)
+    assert_allclose(space.variance_ratio.sum(), 1.0)
+
+
+def test_against_plain_pca_of_the_logs():
+    points = cloud(4, noise=0.02)
+    space = ShapeSpace.fit(points, modes=3)
+    logs = np.stack([grassmann.log(space.mean, p) for p in points]).reshape(len(points), -1)
+    assert np.abs(logs.mean(axis=0)).max() < 1e-10
+    singular, directions = np.linalg.svd(logs, full_matrices=False)[1:]
+    assert_allclose(space.variances[:10], singular[:10] ** 2 / len(points), rtol=1e-9)
+    overlap = np.abs(np.sum(directions[:3] * space.modes.reshape(3, -1), axis=1))
+    assert_allclose(overlap, 1.0, atol=1e-8)
+
+
+@given(SEEDS, st.integers(1, 200))
+def test_samples_lie_in_the_ellipsoid_of_the_data(seed, count):
+    space = ShapeSpace.fit(cloud(3), modes=3)
+    drawn = space.sample(count, np.random.default_rng(seed))
+    spread = np.sqrt(space.variances[:3])
+    reach = np.linalg.norm(space.coordinates / spread, axis=1).max()
+    assert drawn.shape == (count, 3)
+    assert np.linalg.norm(drawn / spread, axis=1).max() <= reach + 1e-12
+    assert np.array_equal(drawn, space.sample(count, np.random.default_rng(seed)))
+
+
+@given(SEEDS)
+def test_carried_tangents_keep_inner_products(seed):
+    points = cloud(seed)
+    space = ShapeSpace.fit(points, modes=3)
+    s, t = np.random.default_rng(seed).normal(size=(2, 5, 3))
+    carried_s, carried_t = (space.carried(x, points[:5]) for x in (s, t))
+    assert_allclose(np.sum(carried_s * carried_t, axis=(1, 2)), np.sum(s * t, axis=1), atol=1e-10)
+    assert_allclose(points[:5].mT @ carried_s, 0, atol=1e-12)
+
+
+def test_a_space_returns_from_its_file(tmp_path):
+    space = ShapeSpace.fit(cloud(1), modes=2, about="a test; größer")
+    space.save(tmp_path / "space.npz")
+    again = ShapeSpace.load(tmp_path / "space.npz")
+    for name in ("u", "mean", "modes", "variances", "coordinates"):
+        assert np.array_equal(getattr(again, name), getattr(space, name))
+    assert again.about == space.about
+
+
+def test_damaged_and_foreign_files_are_refused(tmp_path):
+    space = ShapeSpace.fit(cloud(1), modes=2)
+    path = tmp_path / "space.npz"
+    space.save(path)
+    whole = path.read_bytes()
+    arrays = dict(np.load(path))
+    for name, changed, message in (
+        ("mean", arrays["mean"] * 1.1, "damaged"),
+        ("version", np.array(99), "version 99, allowed is 1"),
+        ("version", np.array([1, 1]), "version"),
+    ):
+        np.savez(path, **{**arrays, name: changed})
+        with pytest.raises(SpaceError, match=message):
+            ShapeSpace.load(path)
+    for content in (b"", b"nonsense", whole[: len(whole) // 2]):
+        path.write_bytes(content)
+        with pytest.raises(SpaceError, match=r"is no shape space|cannot be read"):
+            ShapeSpace.load(path)
+    np.savez(path, mean=np.array([{"a": 1}], dtype=object))
+    with pytest.raises(SpaceError, match="is no shape space"):
+        ShapeSpace.load(path)
+    with pytest.raises(SpaceError, match="cannot be read"):
+        ShapeSpace.load(tmp_path / "nowhere.npz")
+
+
+def test_files_that_are_too_large_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("bladegen.archive.MAX_BYTES", 10)
+    (tmp_path / "big.npz").write_bytes(b"x" * 11)
+    with pytest.raises(SpaceError, match="larger than 10 bytes"):
+        ShapeSpace.load(tmp_path / "big.npz")
+
+
+@pytest.mark.parametrize("modes", [0, -1, 60, 1000])
+def test_impossible_numbers_of_modes_are_refused(modes):
+    with pytest.raises(SpaceError, match=f"modes: got {modes}, allowed is 1 to"):
+        ShapeSpace.fit(cloud(1), modes=modes)
+
+
+def test_wrong_coordinates_are_refused():
+    space = ShapeSpace.fit(cloud(1), modes=2)
+    with pytest.raises(SpaceError, match="got 3 coordinates, the space has 2"):
+        space.decode([0.0, 0.0, 0.0])
+    with pytest.raises(SpaceError, match="got 1 coordinates"):
+        space.decode(0.0)
+    with pytest.raises(SpaceError, match="finite"):
+        space.decode([0.0, np.nan])
+    assert space.outside([0.0, 0.0]) is None
+    assert "t2 = 9, allowed is" in space.outside([0.0, 9.0])
+
+
+def test_a_mean_that_does_not_converge_is_said(monkeypatch):
+    monkeypatch.setattr("bladegen.pga.STEPS", 1)
+    with pytest.raises(GeometryError, match="not converged after 1 steps"):
+        ShapeSpace.fit(cloud(1), modes=2)
+
+
+def test_the_bundled_space_is_the_paper_s():
+    space = ShapeSpace.bundled()
+    assert len(space.coordinates) == 16_000
+    assert space.dimension == 4
+    assert len(space.u) == 401
+    assert 0.93 < space.variance_ratio[:4].sum() < 0.97  # "rapid decay"; 95 % in FIELD's set
+    assert_allclose(space.mean.T @ space.modes, 0, atol=1e-12)
+    assert_allclose(space.coordinates.mean(axis=0), 0, atol=1e-9)

@@ -230,7 +230,7 @@ def _chunks(count: int) -> Iterator[slice]:
 
 def _karcher_mean(points: Array) -> Array:
     """Return the Karcher mean of many points, by gradient steps over chunks."""
-    mean = grassmann.align(points[0], np.linalg.qr(points[0]).Q)
+    mean = points[0]
     length = np.inf
     for _ in range(STEPS):
         step = sum(
@@ -239,7 +239,7 @@ def _karcher_mean(points: Array) -> Array:
         tangent = np.asarray(step) / len(points)
         length = float(grassmann.norm(tangent))
         if length <= TOLERANCE:
-            return mean
+            return grassmann.align(points[0], mean)
         mean = np.linalg.qr(grassmann.exp(mean, tangent)).Q
     raise GeometryError(
         f"Karcher mean of {len(points)} shapes: not converged after {STEPS} steps: the mean "

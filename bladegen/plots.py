@@ -10,7 +10,7 @@ from bladegen.arrays import Array
 from bladegen.errors import ExportError
 from bladegen.pga import ShapeSpace
 
-__all__ = ["draw_space", "figure", "save_figure"]
+__all__ = ["draw_space", "figure", "physical", "save_figure", "shade"]
 
 SUFFIXES = (".png", ".svg", ".pdf")
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe & Ito
@@ -25,6 +25,13 @@ def figure(rows: int, columns: int, *, width: float, height: float) -> tuple[Any
     drawn = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(drawn)
     return drawn, drawn.subplots(rows, columns, squeeze=False)
+
+
+def shade(fraction: float) -> Any:
+    """Return a colour from dark to bright, told apart by everyone (viridis)."""
+    from matplotlib import colormaps
+
+    return colormaps["viridis"](0.92 * fraction)
 
 
 def save_figure(drawn: Any, path: Path) -> None:

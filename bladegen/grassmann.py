@@ -14,7 +14,7 @@ import numpy as np
 from bladegen.arrays import Array
 from bladegen.errors import GeometryError
 
-__all__ = ["align", "distance", "exp", "karcher_mean", "log", "norm", "transport"]
+__all__ = ["align", "distance", "exp", "karcher_mean", "log", "log_factors", "norm", "transport"]
 
 RIGHT_ANGLE = 1e-12  # cosine of a principal angle that counts as 90 degrees: rounding of X^T Y
 MEAN_TOLERANCE = 1e-12  # mean tangent at the Karcher mean [rad]
@@ -74,17 +74,37 @@ def log(X: Array, Y: Array) -> Array:
     GeometryError
         If a principal angle between the planes reaches 90 degrees.
     """
-    U, cosines, Wt = np.linalg.svd(X.mT @ Y)
+    G, H = log_factors(X.mT @ Y)
+    D: Array = Y @ G - X @ H
+    return D - X @ (X.mT @ D)  # rounding of the difference leaves the horizontal space
+
+
+def log_factors(overlap: Array) -> tuple[Array, Array]:
+    """Return the p x p matrices G and H with log(X, Y) = Y G - X H.
+
+    Parameters
+    ----------
+    overlap : (..., p, p) array
+        X^T Y.
+
+    Raises
+    ------
+    GeometryError
+        If a principal angle between the planes reaches 90 degrees.
+
+    Notes
+    -----
+    With X^T Y = U c W^T, Q = W U^T and C = U c U^T, log = (Y Q - X C) f(C), so that
+    G = W f(c) U^T and H = U c f(c) U^T.
+    """
+    U, cosines, Wt = np.linalg.svd(overlap)
     if cosines.size and cosines.min() < RIGHT_ANGLE:
         raise GeometryError(
             "log: a principal angle between the shapes reaches 90 degrees "
             f"(smallest cosine {cosines.min():.1e}); it must stay below"
         )
-    # With Q = W U^T and C = X^T Y Q = U cosines U^T, D = (Y Q - X C) f(C).
-    U_f = U * _angle_over_sine(cosines)[..., None, :]
-    residual = Y @ Wt.mT - (X @ U) * cosines[..., None, :]
-    D: Array = residual @ U_f.mT
-    return D
+    Ut_f = _angle_over_sine(cosines)[..., None] * U.mT
+    return Wt.mT @ Ut_f, (U * cosines[..., None, :]) @ Ut_f
 
 
 def distance(X: Array, Y: Array) -> Array:

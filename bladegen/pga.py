@@ -92,9 +92,11 @@ class ShapeSpace:
         for part in _chunks(count):
             logs = grassmann.log(mean[None], points[part]).reshape(-1, 2 * n)
             gram += logs.T @ logs
-        variances, vectors = np.linalg.eigh(gram / count)
-        variances, vectors = np.maximum(variances[::-1], 0.0), vectors[:, ::-1]
-        kept = _horizontal(mean, vectors[:, :modes].T.reshape(modes, n, 2))
+        from scipy.linalg import eigh
+
+        variances = np.maximum(np.linalg.eigvalsh(gram / count)[::-1], 0.0)
+        _, vectors = eigh(gram, subset_by_index=[2 * n - modes, 2 * n - 1])
+        kept = _horizontal(mean, vectors[:, ::-1].T.reshape(modes, n, 2))
         space = cls(
             u=landmark_parameters(n) if u is None else u,
             mean=mean,
@@ -229,21 +231,25 @@ def _chunks(count: int) -> Iterator[slice]:
 
 
 def _karcher_mean(points: Array) -> Array:
-    """Return the Karcher mean of many points, by gradient steps over chunks."""
-    mean = points[0]
-    length = np.inf
+    """Return the Karcher mean of many points, by gradient steps.
+
+    The sum of the logarithms Y G - X H is (sum of Y G) - X (sum of H) with 2 x 2 matrices G and
+    H, so a step is two products with the matrix of all landmarks and never forms a logarithm.
+    """
+    count, n, _ = points.shape
+    landmarks = np.ascontiguousarray(np.moveaxis(points, 0, 1)).reshape(n, 2 * count)
+    mean, length = points[0], np.inf
     for _ in range(STEPS):
-        step = sum(
-            grassmann.log(mean[None], points[part]).sum(axis=0) for part in _chunks(len(points))
-        )
-        tangent = np.asarray(step) / len(points)
+        overlaps = np.moveaxis((mean.T @ landmarks).reshape(2, count, 2), 0, 1)
+        G, H = grassmann.log_factors(overlaps)
+        tangent = (landmarks @ G.reshape(2 * count, 2) - mean @ H.sum(axis=0)) / count
         length = float(grassmann.norm(tangent))
         if length <= TOLERANCE:
             return grassmann.align(points[0], mean)
         mean = np.linalg.qr(grassmann.exp(mean, tangent)).Q
     raise GeometryError(
-        f"Karcher mean of {len(points)} shapes: not converged after {STEPS} steps: the mean "
-        f"tangent is {length:.1e} rad, allowed is {TOLERANCE:.1e}"
+        f"Karcher mean of {count} shapes: not converged after {STEPS} steps: the mean tangent is "
+        f"{length:.1e} rad, allowed is {TOLERANCE:.1e}"
     )
 
 

@@ -74,8 +74,19 @@ python="$(find_python)"
 install_libraries "$python"
 # pip comes last: without it an earlier run was broken off
 [ -x .venv/bin/pip ] || "$python" -m venv --clear .venv
+# What was installed with an extra serves without it too.
+is_done() {
+    local stamp
+    for stamp in "$@"; do
+        if [ -f "$stamp" ] && [ ! pyproject.toml -nt "$stamp" ]; then return 0; fi
+    done
+    return 1
+}
+
 stamp=".venv/.bladegen-${extra:-plain}"
-if [ ! -f "$stamp" ] || [ pyproject.toml -nt "$stamp" ]; then
+others=()
+[ -n "$extra" ] || others=(.venv/.bladegen-*)
+if ! is_done "$stamp" ${others[@]+"${others[@]}"}; then
     printf 'setup: installing bladegen into .venv (about two minutes and 2 GB)\n'
     .venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".${extra:+[$extra]}"
     touch "$stamp"

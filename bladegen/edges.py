@@ -48,12 +48,15 @@ class MinimumThickness:
     thickness: float = 0.002
 
     def __call__(self, profiles: Array, chord: Array) -> Array:
-        half, middle = _halves(profiles)
-        wanted = 0.5 * self.thickness / chord
-        missing = np.maximum(wanted**2 - half[:, 0, 1] ** 2, 0.0)[:, None]
-        opened = np.sqrt(half[..., 1] ** 2 + _window(middle) * missing)
-        half[..., 1] = np.where(missing > 0, opened, half[..., 1])
-        return _joined(profiles, half, middle)
+        given = 0.5 * (profiles[:, 0, 1] - profiles[:, -1, 1])
+        missing = (0.5 * self.thickness / chord) ** 2 - given**2
+        thin = np.flatnonzero(missing > 0)
+        half, middle = _halves(profiles[thin])
+        window = _window(middle) * missing[thin, None]
+        half[..., 1] = np.sqrt(half[..., 1] ** 2 + window)
+        result = profiles.copy()
+        result[thin] = _joined(profiles[thin], half, middle)
+        return result
 
 
 @dataclass(frozen=True)

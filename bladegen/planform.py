@@ -123,10 +123,9 @@ class Planform:
             Points [m], blade frame.
         """
         blade = self.definition
-        chord, twist = blade.chord(eta)[:, None], blade.twist(eta)[:, None]
-        along = chord * profiles[..., 0] - blade.offset_y(eta)[:, None]
-        height = chord * profiles[..., 1] + blade.offset_x(eta)[:, None]
-        x = height * np.cos(twist) + along * np.sin(twist)
-        y = along * np.cos(twist) - height * np.sin(twist)
-        local = np.stack([x, y], axis=-1)
-        return blade.axis(eta)[:, None] + local @ self.frames(eta)[:, :2]
+        c, s = np.cos(blade.twist(eta)), np.sin(blade.twist(eta))
+        turn = np.stack([np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1)], axis=-2)
+        axes = turn @ self.frames(eta)[:, :2]  # rows: along the chord, normal to it
+        offset = np.stack([-blade.offset_y(eta), blade.offset_x(eta)], axis=-1)[:, None]
+        start = blade.axis(eta)[:, None] + offset @ axes
+        return profiles @ (blade.chord(eta)[:, None, None] * axes) + start

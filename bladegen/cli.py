@@ -68,6 +68,9 @@ Formats = Annotated[
 Tolerance = Annotated[
     str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
 ]
+Stations = Annotated[int, typer.Option(help="Sections of the meshes.")]
+TipOption = Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")]
+UnitOption = Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ and VTP files.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
 PathOption = Annotated[
@@ -153,26 +156,17 @@ def build(
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
     formats: Formats = None,
     landmarks: Landmarks = 401,
-    stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300,
+    stations: Stations = 300,
     path: PathOption = PathKind.geodesic,
     planes: PlanesOption = Planes.axis,
     tolerance: Tolerance = "0.3mm",
     trailing_edge: EdgeOption = "2mm",
-    tip: Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")] = TipKind.flat,
-    unit: Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ and VTP files.")] = Unit.m,
+    tip: TipOption = TipKind.flat,
+    unit: UnitOption = Unit.m,
 ) -> None:
     """Build a blade: a STEP solid, meshes, a picture and a report."""
-    from bladegen import cad
-    from bladegen.exporters import Options
-    from bladegen.texts import metres
-
     made = _blade(blade, landmarks, path, planes, trailing_edge)
-    options = Options(
-        tolerance=metres(tolerance, "tolerance"),
-        stations=stations,
-        tip={"flat": cad.flat_tip, "round": cad.round_tip}[tip],
-        unit=unit,
-    )
+    options = _options(tolerance, stations, tip, unit)
     _build(made, output, formats, options)
 
 
@@ -213,20 +207,22 @@ def perturb(
     name: Annotated[str | None, typer.Option(help="Of the perturbed blade and its files.")] = None,
     formats: Formats = None,
     landmarks: Landmarks = 401,
+    stations: Stations = 300,
     path: PathOption = PathKind.geodesic,
     planes: PlanesOption = Planes.axis,
     tolerance: Tolerance = "0.3mm",
     trailing_edge: EdgeOption = "2mm",
+    tip: TipOption = TipKind.flat,
+    unit: UnitOption = Unit.m,
 ) -> None:
     """Perturb a blade consistently and build it."""
     from math import radians
 
-    from bladegen.exporters import Options
     from bladegen.pga import ShapeSpace
-    from bladegen.texts import coordinates, metres, span_window
+    from bladegen.texts import coordinates, span_window
 
     t = coordinates(pga or [])
-    options = Options(tolerance=metres(tolerance, "tolerance"))
+    options = _options(tolerance, stations, tip, unit)
     made = _blade(blade, landmarks, path, planes, trailing_edge)
     variant = made.perturbed(
         None if t is None else ShapeSpace.load(space) if space else ShapeSpace.bundled(),
@@ -319,6 +315,20 @@ def _blade(source: str, landmarks: int, path: str, planes: Planes, edge: str) ->
         path=path,
         planes={"axis": normal_to_axis, "z": normal_to_z}[planes],
         trailing_edge=named.get(edge) or MinimumThickness(metres(edge, "trailing-edge")),
+    )
+
+
+def _options(tolerance: str, stations: int, tip: TipKind, unit: Unit) -> Any:
+    """Return how products are made, as the options say."""
+    from bladegen import cad
+    from bladegen.exporters import Options
+    from bladegen.texts import metres
+
+    return Options(
+        tolerance=metres(tolerance, "tolerance"),
+        stations=stations,
+        tip={"flat": cad.flat_tip, "round": cad.round_tip}[tip],
+        unit=unit,
     )
 
 

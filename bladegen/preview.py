@@ -319,6 +319,8 @@ def _caption(blade: Blade) -> str:
     bend = f", prebend {tip[0]:.2f} m" if abs(tip[0]) > 0.005 else ""
     sweep = f", sweep {tip[1]:.2f} m" if abs(tip[1]) > 0.005 else ""
     title = definition.description or definition.name
+    if blade.changes:
+        title += f", perturbed: {definition.name}"
     return (
         f"{title}\n{blade.length:.1f} m long, chord to {chord.max():.2f} m, twist "
         f"{twist[0]:.1f} to {twist[1]:.1f} deg{bend}{sweep}; stations of the definition marked"

@@ -18,7 +18,7 @@ __all__ = ["align", "distance", "exp", "karcher_mean", "log", "log_factors", "no
 
 RIGHT_ANGLE = 1e-12  # cosine of a principal angle that counts as 90 degrees: rounding of X^T Y
 MEAN_TOLERANCE = 1e-12  # mean tangent at the Karcher mean [rad]
-MEAN_STEPS = 100
+MEAN_STEPS = 300
 
 
 def align(X: Array, Y: Array) -> Array:

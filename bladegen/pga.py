@@ -154,8 +154,11 @@ class ShapeSpace:
 
     def encode(self, points: Array) -> Array:
         """Return normal coordinates (..., r) of shapes (..., n, 2), any representatives."""
-        logs = grassmann.log(self.mean, points)
-        t: Array = np.tensordot(logs, self.modes, axes=([-2, -1], [1, 2]))
+        # The logarithm is Y G - X H, and modes are horizontal: <Y G - X H, U> = <G, Y^T U>.
+        G, _ = grassmann.log_factors(self.mean.T @ points)
+        across = np.moveaxis(self.modes, 0, 1).reshape(len(self.mean), -1)
+        inner = (points.mT @ across).reshape(*G.shape[:-1], self.dimension, 2)
+        t: Array = np.einsum("...arb,...ab->...r", inner, G)
         return t
 
     def tangent(self, t: Array) -> Array:

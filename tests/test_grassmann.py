@@ -193,3 +193,29 @@ def test_agrees_with_pymanopt():
     rate = (after - before) / (2 * h)
     assert_allclose(rate - points_[1] @ (points_[1].mT @ rate), 0, atol=1e-6)
     assert gr.norm(here) > 0.5
+
+
+@given(SEEDS, st.sampled_from(["plain", "equal", "mirror", "singular", "zero"]))
+def test_singular_values_by_formula(seed, kind):
+    A = np.random.default_rng(seed).normal(size=(3, 2, 2))
+    if kind == "equal":
+        A = 2.0 * np.linalg.qr(A).Q
+    elif kind == "mirror":
+        A = A @ np.diag([1.0, -1.0])
+    elif kind == "singular":
+        A = A[..., :1] @ A[..., 1:].mT
+    elif kind == "zero":
+        A = np.zeros_like(A)
+    U, s, Vt = gr._svd(A)
+    eye = np.broadcast_to(np.eye(2), (3, 2, 2))
+    assert_allclose((U * s[..., None, :]) @ Vt, A, atol=1e-13)
+    assert_allclose(U @ U.mT, eye, atol=1e-14)
+    assert_allclose(Vt @ Vt.mT, eye, atol=1e-14)
+    assert_allclose(s, np.linalg.svd(A, compute_uv=False), atol=1e-13)
+
+
+def test_planes_of_more_than_two_dimensions():
+    rng = np.random.default_rng(2)
+    X = np.linalg.qr(rng.normal(size=(20, 3))).Q
+    D = random_tangent(rng, X, 0.7)
+    assert_allclose(gr.log(X, gr.exp(X, D)), D, atol=1e-12)

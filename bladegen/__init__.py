@@ -68,7 +68,12 @@ __all__ = [
 ]
 
 
+_MODULES = ("affine", "grassmann")
+
+
 def __getattr__(name: str) -> Any:
+    if name in _MODULES:
+        return import_module(f"bladegen.{name}")
     if name not in _HOME:
         raise AttributeError(f"module 'bladegen' has no attribute {name!r}")
     value = getattr(import_module(f"bladegen.{_HOME[name]}"), name)

@@ -70,7 +70,8 @@ class ShapeSpace:
         modes : int
             How many principal modes to keep.
         u : (n,) array, optional
-            Their landmark parameters; those of `landmarks.landmark_parameters` if not given.
+            Their landmark parameters; if not given, those of `landmarks.landmark_parameters`,
+            or even ones for a number of landmarks that these do not know.
         about : str
             Where the shapes are from.
 
@@ -98,7 +99,7 @@ class ShapeSpace:
         _, vectors = eigh(gram, subset_by_index=[2 * n - modes, 2 * n - 1])
         kept = _horizontal(mean, vectors[:, ::-1].T.reshape(modes, n, 2))
         space = cls(
-            u=landmark_parameters(n) if u is None else u,
+            u=_parameters(n) if u is None else u,
             mean=mean,
             modes=kept,
             variances=variances[:largest],
@@ -254,6 +255,11 @@ def _karcher_mean(points: Array) -> Array:
         f"Karcher mean of {count} shapes: not converged after {STEPS} steps: the mean tangent is "
         f"{length:.1e} rad, allowed is {TOLERANCE:.1e}"
     )
+
+
+def _parameters(n: int) -> Array:
+    """Return landmark parameters of n points that may be no airfoil's."""
+    return landmark_parameters(n) if n % 2 and n >= 5 else np.linspace(0.0, 1.0, n)
 
 
 def _horizontal(mean: Array, modes: Array) -> Array:

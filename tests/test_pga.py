@@ -168,3 +168,12 @@ def test_the_bundled_space_is_the_paper_s():
     assert 0.93 < space.variance_ratio[:4].sum() < 0.97  # "rapid decay"; 95 % in FIELD's set
     assert_allclose(space.mean.T @ space.modes, 0, atol=1e-12)
     assert_allclose(space.coordinates.mean(axis=0), 0, atol=1e-9)
+
+
+@pytest.mark.parametrize("n", [4, 20, 21])
+def test_any_number_of_landmarks_can_be_learned_from(n):
+    points = random_points(np.random.default_rng(0), 1, n)
+    near = grassmann.exp(points, random_tangent(np.random.default_rng(1), points.repeat(9, 0), 0.2))
+    space = ShapeSpace.fit(near, modes=2)
+    assert space.u.shape == (n,)
+    assert_allclose(space.encode(space.decode([0.1, -0.05])), [0.1, -0.05], atol=1e-12)

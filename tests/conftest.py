@@ -1,4 +1,9 @@
+"""Hypothesis: the same examples on every run, new ones with HYPOTHESIS_PROFILE=explore."""
+
+import os
+
 from hypothesis import settings
 
-settings.register_profile("bladegen", deadline=None, max_examples=40, print_blob=True)
-settings.load_profile("bladegen")
+settings.register_profile("steady", deadline=None, max_examples=40, derandomize=True)
+settings.register_profile("explore", deadline=None, max_examples=200, print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))

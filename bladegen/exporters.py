@@ -219,7 +219,7 @@ def write(products: Products, path: Path) -> None:
             miss = ToleranceError(
                 f"{path}: the solid is {solid.deviation.maximum * 1e3:.3f} mm off the blade at "
                 f"eta = {solid.deviation.eta:.4f}, allowed is {tolerance * 1e3:g} mm; kept as "
-                f"{target.name}"
+                f"{target.name}; more landmarks than {len(products.blade.u)} may help"
             )
     with replacing(target) as temporary:
         writer(products, temporary)

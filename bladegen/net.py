@@ -182,8 +182,10 @@ def fitted(
         offsets = net.offsets(blade.sections(middles), blade.u, middles)
         worst = np.abs(offsets).max(axis=1)
         rms = np.sqrt(np.mean(offsets**2, axis=1))
-        split = (worst > MAXIMUM_SHARE * tolerance) | (rms > RMS_SHARE * tolerance)
-        if not split.any() or len(v) + np.count_nonzero(split) > MAX_SECTIONS:
+        excess = np.maximum(worst / MAXIMUM_SHARE, rms / RMS_SHARE) / tolerance
+        room = MAX_SECTIONS - len(v)
+        split = np.argsort(-excess, kind="stable")[: min(np.count_nonzero(excess > 1), room)]
+        if not split.size:
             break
         v = np.sort(np.concatenate([v, middles[split]]))
     measured = deviation(net, blade)

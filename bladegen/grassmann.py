@@ -236,7 +236,19 @@ def _root_sum(squares: Array, axes: int | tuple[int, ...]) -> Array:
 
 
 def _apply(f: Callable[[Array], Array], A: Array) -> Array:
-    """Apply `f` to the eigenvalues of the symmetric matrices `A`, shape (..., p, p)."""
+    """Apply `f` to the eigenvalues of the symmetric matrices `A`, shape (..., p, p).
+
+    For 2 x 2 matrices with eigenvalues m - d and m + d, f(A) is the mean of f there plus half
+    their difference times (A - m) / d: no eigenvectors are needed.
+    """
+    if A.shape[-1] == 2:
+        (a, b), (_, d) = np.moveaxis(A, (-2, -1), (0, 1))
+        middle, half = 0.5 * (a + d), 0.5 * (a - d)
+        reach = np.hypot(half, b)
+        low, high = f(np.maximum(middle - reach, 0.0)), f(np.maximum(middle + reach, 0.0))
+        rate = np.divide(high - low, 2.0 * reach, out=np.zeros_like(reach), where=reach > 0)
+        mean = 0.5 * (low + high)
+        return _columns(mean + rate * half, rate * b, rate * b, mean - rate * half)
     w, V = np.linalg.eigh(A)
     result: Array = (V * f(np.maximum(w, 0.0))[..., None, :]) @ V.mT
     return result

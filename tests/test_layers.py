@@ -17,6 +17,7 @@ FLOW = [
     "archive",
     "grassmann",
     "landmarks",
+    "separation",
     "crossing",
     "definition",
     "readers",

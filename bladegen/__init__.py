@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from bladegen.deformation import Coordinates, Window
     from bladegen.errors import BladegenError, Finding
     from bladegen.exporters import export
+    from bladegen.families import Family, family
     from bladegen.pga import ShapeSpace
     from bladegen.readers import bundled, read
 
@@ -37,6 +38,7 @@ _HOME = {
     "BladegenError": "errors",
     "Coordinates": "deformation",
     "Distribution": "definition",
+    "Family": "families",
     "Finding": "errors",
     "ReferenceAxis": "definition",
     "Rotor": "definition",
@@ -45,6 +47,7 @@ _HOME = {
     "Window": "deformation",
     "bundled": "readers",
     "export": "exporters",
+    "family": "families",
     "read": "readers",
 }
 
@@ -55,6 +58,7 @@ __all__ = [
     "BladegenError",
     "Coordinates",
     "Distribution",
+    "Family",
     "Finding",
     "ReferenceAxis",
     "Rotor",
@@ -64,6 +68,7 @@ __all__ = [
     "__version__",
     "bundled",
     "export",
+    "family",
     "read",
 ]
 

@@ -5,7 +5,7 @@ path on Gr(n, 2) with splines for the affine part, and the planform.  A `Blade` 
 value; everything about it follows from its fields.  Metres and radians, blade frame.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -95,6 +95,9 @@ class Blade(Perturbable):
         for field in ("u", "eta", "representatives", "M", "b"):
             object.__setattr__(self, field, readonly(getattr(self, field)))
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}  # no caches
+
     @classmethod
     def from_definition(
         cls,
@@ -180,7 +183,8 @@ class Blade(Perturbable):
         return Planform(self.definition, self.planes)
 
     @cached_property
-    def _splines(self) -> SectionSplines:
+    def splines(self) -> SectionSplines:
+        """Splines through sections with the blade's landmarks."""
         return SectionSplines(self.u)
 
     @cached_property
@@ -222,27 +226,27 @@ class Blade(Perturbable):
         """
         spans = _spans(eta)
         flat = spans.reshape(-1)
-        plain, X, M, b = self._shapes(flat)
+        plain, X, M, b = self.shapes(flat)
         points = affine.restore(X, M, b)
-        A, c = self._splines.normalising(points, self._target(flat, plain, M, b))
+        A, c = self.splines.normalising(points, self._target(flat, plain, M, b))
         if u is not None:
             finer = self._between(u) @ plain
             if self.deformations:
-                finer = finer + self._splines.values(u) @ (X - plain)
+                finer = finer + self.splines.values(u) @ (X - plain)
             points = affine.restore(finer, M, b)
         result = affine.restore(points, A, c)
         return result.reshape(*spans.shape, *result.shape[1:])
 
     def wanted_thickness(self, eta: Array) -> Array | None:
         """Return the relative thickness that rules at span fractions (k,), None if none does."""
-        plain, _, M, b = self._shapes(eta)
+        plain, _, M, b = self.shapes(eta)
         return self._target(eta, plain, M, b)
 
     def relative_thickness(self, eta: ArrayLike) -> Array:
         """Return the relative thickness of the sections at `eta`."""
         spans = _spans(eta)
         profiles = self.profiles(spans.reshape(-1))
-        return self._splines.fit(profiles).relative_thickness.reshape(spans.shape)
+        return self.splines.fit(profiles).relative_thickness.reshape(spans.shape)
 
     @property
     def points(self) -> Array:
@@ -252,8 +256,12 @@ class Blade(Perturbable):
             X = deformation(X, self.eta)
         return X
 
-    def _shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]:
-        """Return the path's points, the same deformed, and their affine maps M and b."""
+    def shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the path's points at span fractions (k,), the same deformed, and M and b.
+
+        ``points @ M + b`` are sections before they are brought to unit chord and thickness;
+        bases join over span.
+        """
         path, spline = self._joined
         q = self.parameter(eta)
         plain, (M, b) = path(q), spline(q)
@@ -271,7 +279,7 @@ class Blade(Perturbable):
         if thickness is not None:
             target = thickness(eta)
         elif self.deformations or self.thickenings:
-            target = self._splines.fit(affine.restore(plain, M, b)).relative_thickness
+            target = self.splines.fit(affine.restore(plain, M, b)).relative_thickness
         else:
             return None
         for thickening in self.thickenings:

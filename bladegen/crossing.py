@@ -65,7 +65,8 @@ def crossing_sections(sections: Array) -> list[int]:
     Parameters
     ----------
     sections : (k, n, 2) array
-        Trailing edge -> suction side -> leading edge (middle landmark) -> pressure side.
+        Trailing edge -> suction side -> leading edge (middle landmark) -> pressure side,
+        closed by a straight line over the trailing edge.
 
     Notes
     -----
@@ -73,5 +74,8 @@ def crossing_sections(sections: Array) -> list[int]:
     exactly.
     """
     unsure = np.flatnonzero(~ladders(sections))
-    unsure = unsure[~graphs(sections[unsure])]
-    return [int(k) for k in unsure if first_crossing(sections[k]) is not None]
+    sound, crossing = graphs(sections[unsure])
+    for i in np.flatnonzero(~sound & ~crossing):
+        section = sections[unsure[i]]
+        crossing[i] = first_crossing(np.concatenate([section, section[:1]])) is not None
+    return [int(k) for k in unsure[crossing]]

@@ -18,11 +18,21 @@ from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis, St
 from bladegen.errors import PerturbationError
 from bladegen.pga import ShapeSpace
 
-__all__ = ["AffineChange", "Coordinates", "Deformation", "Thickening", "Window", "deformation_of"]
+__all__ = [
+    "RANGES",
+    "AffineChange",
+    "Coordinates",
+    "Deformation",
+    "Thickening",
+    "Window",
+    "deformation_of",
+    "faded",
+]
 
 ROUND = 0.02  # of the chord; an airfoil nearer to its circle than this is round
 SAME_LANDMARKS = 1e-12
 RAMP = 33  # span fractions that resolve a window's rise
+Amount = float | Array
 RANGES = {
     "thickness": (0.2, 5.0),
     "camber": (0.2, 1.8),
@@ -175,7 +185,8 @@ class AffineChange:
     """The paper's affine parameters and scalings of the planform; identity by default.
 
     The first four act within the window, through the maps of the paper; their effect on chord
-    and relative thickness is exact, and no point of the Grassmannian moves.
+    and relative thickness is exact, and no point of the Grassmannian moves.  Each is a number,
+    or one a variant where many are made at once (`batch`).
 
     Parameters
     ----------
@@ -192,20 +203,21 @@ class AffineChange:
         Factors of the whole distributions; 1 is the identity.
     """
 
-    thickness: float = 1.0
-    camber: float = 1.0
-    chord: float = 1.0
-    twist: float = 0.0
-    chord_scale: float = 1.0
-    twist_scale: float = 1.0
-    prebend_scale: float = 1.0
+    thickness: Amount = 1.0
+    camber: Amount = 1.0
+    chord: Amount = 1.0
+    twist: Amount = 0.0
+    chord_scale: Amount = 1.0
+    twist_scale: Amount = 1.0
+    prebend_scale: Amount = 1.0
 
     def __post_init__(self) -> None:
         for name, (low, high) in RANGES.items():
-            value = getattr(self, name)
-            if not low <= value <= high:
+            values = np.atleast_1d(getattr(self, name))
+            outside = values[~((low <= values) & (values <= high))]
+            if outside.size:
                 raise PerturbationError(
-                    f"{name}: got {value:g}, allowed is {low:.4g} to {high:.4g}"
+                    f"{name}: got {outside[0]:g}, allowed is {low:.4g} to {high:.4g}"
                 )
 
     def changed(self) -> dict[str, float]:
@@ -217,14 +229,14 @@ class AffineChange:
         }
 
     @property
-    def _widening(self) -> float:
+    def widening(self) -> Amount:
         """The factor along the chord of the three diagonal maps."""
         return (2.0 - self.camber) * self.chord
 
     @property
-    def thickening(self) -> float:
+    def thickening(self) -> Amount:
         """The factor of the relative thickness of the three diagonal maps."""
-        return self.thickness * self.camber / self._widening
+        return self.thickness * self.camber / self.widening
 
     def applied(self, definition: BladeDefinition, window: Window) -> BladeDefinition:
         """Return a definition with chord, twist, offsets and axis changed.
@@ -240,21 +252,20 @@ class AffineChange:
                 quantity = replace(quantity, values=whole * quantity.values)
             if factor == 1.0 and shift == 0.0:
                 return quantity
-            faded = Faded(quantity, window, factor, shift)
+            changed = Faded(quantity, window, factor, shift)
             grid = window.with_ramp(quantity.grid)
-            return replace(quantity, grid=grid, values=faded(grid), spline=faded.as_spline)
+            return replace(quantity, grid=grid, values=changed(grid), spline=changed.as_spline)
 
-        twist = scaled(definition.twist, 1.0, self.twist_scale, self.twist)
+        widening, whole = float(self.widening), float(self.chord_scale)
+        twist = scaled(definition.twist, 1.0, float(self.twist_scale), float(self.twist))
         offset = definition.section_offset_y
         axis = definition.axis
         return replace(
             definition,
-            chord=scaled(definition.chord, self._widening, self.chord_scale),
+            chord=scaled(definition.chord, widening, whole),
             twist=twist,
-            section_offset_y=None
-            if offset is None
-            else scaled(offset, self._widening, self.chord_scale),
-            axis=ReferenceAxis(scaled(axis.x, 1.0, self.prebend_scale), axis.y, axis.z),
+            section_offset_y=None if offset is None else scaled(offset, widening, whole),
+            axis=ReferenceAxis(scaled(axis.x, 1.0, float(self.prebend_scale)), axis.y, axis.z),
         )
 
 
@@ -273,11 +284,17 @@ class Faded:
             raise PerturbationError("derivatives of a windowed distribution are not defined")
         at = np.asarray(eta, dtype=np.float64)
         weight = self.window(at)
-        return self.base(at) * (1.0 + weight * (self.factor - 1.0)) + weight * self.shift
+        return faded(self.base(at), weight, self.factor, self.shift)
 
     def as_spline(self, _grid: Array, _values: Array) -> "Faded":
         """Stand in for the spline through a grid of its values."""
         return self
+
+
+def faded(values: Array, weight: Array, factor: Amount, shift: Amount = 0.0) -> Array:
+    """Return values times a factor, plus a shift, both faded in by a weight."""
+    result: Array = values * (1.0 + weight * (factor - 1.0)) + weight * shift
+    return result
 
 
 @dataclass(frozen=True)
@@ -288,4 +305,4 @@ class Thickening:
     window: Window
 
     def __call__(self, eta: Array) -> Array:
-        return 1.0 + self.window(eta) * (self.factor - 1.0)
+        return faded(np.ones_like(eta), self.window(eta), self.factor)

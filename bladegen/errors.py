@@ -11,7 +11,9 @@ __all__ = [
     "BladegenError",
     "CadError",
     "DefinitionError",
+    "DesignError",
     "ExportError",
+    "FamilyError",
     "FileError",
     "Finding",
     "GeometryError",
@@ -55,6 +57,14 @@ class GeometryError(BladegenError):
 
 class CadError(BladegenError):
     """A solid could not be made, or is not the valid closed solid it should be."""
+
+
+class DesignError(BladegenError):
+    """A plan of variants cannot be made."""
+
+
+class FamilyError(BladegenError):
+    """A family of blades cannot be made, or its folder is not what it should be."""
 
 
 class PerturbationError(BladegenError):

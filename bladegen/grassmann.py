@@ -14,7 +14,17 @@ import numpy as np
 from bladegen.arrays import Array
 from bladegen.errors import GeometryError
 
-__all__ = ["align", "distance", "exp", "karcher_mean", "log", "log_factors", "norm", "transport"]
+__all__ = [
+    "align",
+    "distance",
+    "exp",
+    "exp_factors",
+    "karcher_mean",
+    "log",
+    "log_factors",
+    "norm",
+    "transport",
+]
 
 RIGHT_ANGLE = 1e-12  # cosine of a principal angle that counts as 90 degrees: rounding of X^T Y
 MEAN_TOLERANCE = 1e-12  # mean tangent at the Karcher mean [rad]
@@ -52,8 +62,13 @@ def exp(X: Array, D: Array) -> Array:
     (..., n, p) array
         Orthonormal basis of the end plane, continuous in `D` (theorem 2.3).
     """
-    S2 = D.mT @ D
-    return X @ _apply(_cos, S2) + D @ _apply(_sinc, S2)
+    cosine, sinc = exp_factors(D.mT @ D)
+    return X @ cosine + D @ sinc
+
+
+def exp_factors(S2: Array) -> tuple[Array, Array]:
+    """Return cos S and sin S / S for S^2 = D^T D, (..., p, p): the factors of X and D in `exp`."""
+    return _apply(_cos, S2), _apply(_sinc, S2)
 
 
 def log(X: Array, Y: Array) -> Array:

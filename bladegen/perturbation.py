@@ -43,11 +43,11 @@ class Perturbable:
         changes: tuple[dict[str, Any], ...]
 
         @property
-        def _splines(self) -> SectionSplines: ...
+        def splines(self) -> SectionSplines: ...
 
         def _with(self, **changes: Any) -> Self: ...
 
-        def _shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]: ...
+        def shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]: ...
 
     def perturbed(
         self,
@@ -88,9 +88,31 @@ class Perturbable:
         PerturbationError
             If a value is out of range, or a section crosses itself or loses its thickness.
         """
-        affine_change = AffineChange(
-            thickness, camber, chord, twist, chord_scale, twist_scale, prebend_scale
+        variant = self.untested(
+            space,
+            t,
+            AffineChange(thickness, camber, chord, twist, chord_scale, twist_scale, prebend_scale),
+            window=window,
+            allow_extrapolation=allow_extrapolation,
+            name=name,
         )
+        variant._require_sound()
+        return variant
+
+    def untested(
+        self,
+        space: ShapeSpace | None,
+        t: ArrayLike | Coordinates,
+        affine_change: AffineChange,
+        *,
+        window: Window | None = None,
+        allow_extrapolation: bool = False,
+        name: str | None = None,
+    ) -> Self:
+        """Return a perturbed blade as `perturbed` does, whose sections nobody has tested.
+
+        For those who test them otherwise: `families` many at once, the studio after a move.
+        """
         window = window or Window.beyond_circles(self.definition.stations)
         coordinates = t if isinstance(t, Coordinates) else Coordinates.constant(t)
         asked: dict[str, Any] = affine_change.changed()
@@ -102,30 +124,29 @@ class Perturbable:
                 ),
             )
             asked |= {"pga": coordinates.values.tolist(), "pga_at_eta": coordinates.grid.tolist()}
-        thickening = Thickening(affine_change.thickening, window)
+        thickening = Thickening(float(affine_change.thickening), window)
         definition = affine_change.applied(self.definition, window)
-        variant = self._with(
+        return self._with(
             definition=replace(definition, name=name or self.definition.name),
             deformations=deformations,
             thickenings=self.thickenings + ((thickening,) if thickening.factor != 1.0 else ()),
             changes=(*self.changes, asked | {"window": [window.start, window.end]}),
         )
-        variant._require_sound(asked)
-        return variant
 
-    def _require_sound(self, asked: dict[str, Any]) -> None:
+    def _require_sound(self) -> None:
         """Raise if a section crosses itself or has lost its thickness."""
         eta = np.union1d(np.linspace(0.0, 1.0, SOUND_SPANS), self.eta)
-        plain, X, M, b = self._shapes(eta)
+        plain, X, M, b = self.shapes(eta)
         points = affine.restore(X, M, b)
         crossing = crossing_sections(points)
-        own = self._splines.fit(points).relative_thickness
-        before = self._splines.fit(affine.restore(plain, M, b)).relative_thickness
+        own = self.splines.fit(points).relative_thickness
+        before = self.splines.fit(affine.restore(plain, M, b)).relative_thickness
         thin = np.flatnonzero(~(own > LOST_THICKNESS * before))
         for places, fault in ((crossing, "crosses itself"), (thin, "loses its thickness")):
             if len(places):
                 place = float(eta[places[0]])
                 near = self.definition.stations[int(np.argmin(np.abs(self.eta - place)))]
+                asked = {k: v for k, v in self.changes[-1].items() if k != "window"}
                 given = ", ".join(f"{key} = {value}" for key, value in asked.items())
                 raise PerturbationError(
                     f"{self.definition.name}: the section at eta = {place:.4f} (near "

@@ -153,6 +153,12 @@ class ShapeSpace:
         upper: Array = self.coordinates.max(axis=0)
         return upper
 
+    @property
+    def extent(self) -> float:
+        """Standard deviations to the farthest shape: the smallest centred ellipsoid's size."""
+        spread = np.sqrt(self.variances[: self.dimension])
+        return float(np.max(np.linalg.norm(self.coordinates / spread, axis=1)))
+
     def encode(self, points: Array) -> Array:
         """Return normal coordinates (..., r) of shapes (..., n, 2), any representatives."""
         # The logarithm is Y G - X H, and modes are horizontal: <Y G - X H, U> = <G, Y^T U>.
@@ -200,11 +206,10 @@ class ShapeSpace:
         Its axes lie along the modes, in the ratio of the standard deviations.
         """
         spread = np.sqrt(self.variances[: self.dimension])
-        reach = float(np.max(np.linalg.norm(self.coordinates / spread, axis=1)))
         direction = rng.normal(size=(count, self.dimension))
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
         radius = rng.uniform(size=(count, 1)) ** (1.0 / self.dimension)
-        drawn: Array = reach * radius * direction * spread
+        drawn: Array = self.extent * radius * direction * spread
         return drawn
 
     def outside(self, t: Array) -> str | None:

@@ -21,7 +21,7 @@ import numpy as np
 from bladegen.arrays import Array
 from bladegen.definition import BladeDefinition, ReferenceAxis
 
-__all__ = ["Frames", "Planform", "SectionPlanes", "normal_to_axis", "normal_to_z"]
+__all__ = ["Frames", "Planform", "SectionPlanes", "normal_to_axis", "normal_to_z", "placement"]
 
 FRAME_STEPS = 2000  # spans at which frames are carried; a sweep of 10 % turns by 1e-4 rad a step
 
@@ -123,9 +123,39 @@ class Planform:
             Points [m], blade frame.
         """
         blade = self.definition
-        c, s = np.cos(blade.twist(eta)), np.sin(blade.twist(eta))
-        turn = np.stack([np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1)], axis=-2)
-        axes = turn @ self.frames(eta)[:, :2]  # rows: along the chord, normal to it
-        offset = np.stack([-blade.offset_y(eta), blade.offset_x(eta)], axis=-1)[:, None]
-        start = blade.axis(eta)[:, None] + offset @ axes
-        return profiles @ (blade.chord(eta)[:, None, None] * axes) + start
+        axes, start = placement(
+            blade.chord(eta),
+            blade.twist(eta),
+            np.stack([-blade.offset_y(eta), blade.offset_x(eta)], axis=-1),
+            blade.axis(eta),
+            self.frames(eta),
+        )
+        return profiles @ axes + start[..., None, :]
+
+
+def placement(
+    chord: Array, twist: Array, offset: Array, axis: Array, frames: Array
+) -> tuple[Array, Array]:
+    """Return the maps from sections in chords to space.
+
+    Parameters
+    ----------
+    chord, twist : (...) arrays
+        [m] and [rad].
+    offset : (..., 2) array
+        The leading edge from the axis, along the chord and normal to it [m].
+    axis : (..., 3) array
+        The reference axis [m].
+    frames : (..., 3, 3) array
+        Rows: the section's x and y, and the plane's normal.
+
+    Returns
+    -------
+    axes, start : (..., 2, 3), (..., 3) arrays
+        A section's points are ``profile @ axes + start``.
+    """
+    c, s = np.cos(twist), np.sin(twist)
+    turn = np.stack([np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1)], axis=-2)
+    axes = turn @ frames[..., :2, :]  # rows: along the chord, normal to it
+    start = axis + (offset[..., None, :] @ axes)[..., 0, :]
+    return chord[..., None, None] * axes, start

@@ -16,7 +16,7 @@ import numpy as np
 
 from bladegen.arrays import Array, Indices, Mask
 
-__all__ = ["SectionCurves", "SectionSplines"]
+__all__ = ["SectionCurves", "SectionSplines", "resizing"]
 
 PARAMETER_TOLERANCE = 1e-6  # of u, before the last step; a maximum is off by its square
 ITERATIONS = 60  # bisection alone needs 40
@@ -97,21 +97,54 @@ class SectionSplines:
     def _step(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array, Mask]:
         """Return the maps of `normalising`, exact but where a section has two noses, and where."""
         curves = self.fit(points)
-        nose, edge = curves.leading_edge, curves.trailing_edge
-        length = np.linalg.norm(edge - nose, axis=-1)
-        along = (edge - nose) / length[:, None]
-        normal = np.stack([-along[:, 1], along[:, 0]], axis=-1)
-        stretch, chord = np.ones_like(length), curves.chord
-        if relative_thickness is not None:
-            far = np.stack(curves._noses) - nose
-            x, y = np.sum(far * along, axis=-1), np.sum(far * normal, axis=-1)
-            for _ in range(3):  # noses beside the chord line move with the stretch
-                stretch = relative_thickness * chord / curves.thickness
-                chord = np.hypot(length - x, stretch * y).max(axis=0)
-        lift = (stretch - 1.0)[:, None, None] * normal[:, :, None] * normal[:, None, :]
-        scale = 1.0 / chord
-        shift = -(nose[:, None] @ lift)[:, 0] * scale[:, None]
-        return scale[:, None, None] * (np.eye(2) + lift), shift, curves.has_rivals
+        A, c = resizing(
+            np.stack(curves._noses),
+            curves.leading_edge,
+            curves.trailing_edge,
+            None if relative_thickness is None else curves.thickness,
+            relative_thickness,
+        )
+        return A, c, curves.has_rivals
+
+
+def resizing(
+    noses: Array,
+    leading_edge: Array,
+    trailing_edge: Array,
+    thickness: Array | None,
+    relative_thickness: Array | None,
+) -> tuple[Array, Array]:
+    """Return the maps of GL2 that bring measured sections to unit chord and thickness.
+
+    Parameters
+    ----------
+    noses : (2, ..., 2) array
+        The points that may be farthest from the trailing-edge midpoint.
+    leading_edge, trailing_edge : (..., 2) arrays
+        The ends of the chord line.
+    thickness, relative_thickness : (...) arrays, optional
+        The thickness it has, and the thickness over chord it shall have; None leaves it.
+
+    Returns
+    -------
+    A, c : (..., 2, 2), (..., 2) arrays
+        ``points @ A + c``; leading edge and trailing-edge midpoint stay but for the scaling.
+    """
+    line = trailing_edge - leading_edge
+    length = np.linalg.norm(line, axis=-1)
+    along = line / length[..., None]
+    normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+    far = noses - leading_edge
+    x, y = np.sum(far * along, axis=-1), np.sum(far * normal, axis=-1)
+    stretch, chord = np.ones_like(length), np.hypot(length - x, y).max(axis=0)
+    if thickness is not None and relative_thickness is not None:
+        for _ in range(3):  # noses beside the chord line move with the stretch
+            stretch = relative_thickness * chord / thickness
+            chord = np.hypot(length - x, stretch * y).max(axis=0)
+    lift = (stretch - 1.0)[..., None, None] * normal[..., :, None] * normal[..., None, :]
+    scale = 1.0 / chord
+    shift = -(leading_edge[..., None, :] @ lift)[..., 0, :] * scale[..., None]
+    return scale[..., None, None] * (np.eye(2) + lift), shift
 
 
 @dataclass(frozen=True, eq=False)

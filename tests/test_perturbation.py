@@ -31,7 +31,7 @@ def test_by_coordinates_alone_chord_twist_and_thickness_stay(blades, name):
     assert_allclose(variant.chord(SPANS), blade.chord(SPANS), atol=0)
     assert_allclose(variant.twist(SPANS), blade.twist(SPANS), atol=0)
     assert_allclose(variant.relative_thickness(SPANS), blade.relative_thickness(SPANS), atol=1e-9)
-    curves = variant._splines.fit(variant.profiles(SPANS))
+    curves = variant.splines.fit(variant.profiles(SPANS))
     assert_allclose(curves.chord, 1.0, atol=1e-9)
     assert_allclose(variant.M, blade.M, atol=0)
     assert np.abs(variant.profiles(SPANS) - blade.profiles(SPANS)).max() > 5e-3

@@ -1,0 +1,328 @@
+"""Designs of experiments: which variants a family holds.
+
+A design says for each variant where it lies along some factors: coordinates along the modes of
+a shape space (t1, t2, ... in radians) and the affine parameters of `deformation.AffineChange`.
+Points of the unit cube (scipy.stats.qmc, or independent ones) are carried to a region: the box
+between bounds, the ellipsoid that contains the data of a space, or the normal distribution with
+the data's covariance.  Variant i depends on the seed and on i alone (with a Latin hypercube on
+the count as well), whoever asks and in whatever order.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bladegen.arrays import Array, Indices, Mask, readonly
+from bladegen.deformation import RANGES, AffineChange
+from bladegen.errors import DesignError
+from bladegen.pga import ShapeSpace
+
+__all__ = ["DESIGNS", "Design", "Factors", "factors", "tabulated"]
+
+DIAGONALS = 1024  # of a box; with more factors than ten only so many are swept
+
+
+@dataclass(frozen=True, eq=False)
+class Factors:
+    """What varies, and between which bounds.
+
+    Parameters
+    ----------
+    names : tuple of str
+        "t1" to "tr", then parameters of `AffineChange`; radians.
+    low, high : (d,) arrays
+        Bounds.
+    spread : (d,) array
+        Standard deviation of the data along coordinates, zero for affine parameters.
+    reach : float
+        How many standard deviations the ellipsoid of the data extends.
+    """
+
+    names: tuple[str, ...]
+    low: Array
+    high: Array
+    spread: Array
+    reach: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high", "spread"):
+            object.__setattr__(self, name, readonly(getattr(self, name)))
+
+    @property
+    def shape(self) -> Mask:
+        """Which factors are coordinates of shape, (d,)."""
+        return np.array([name not in RANGES for name in self.names], dtype=bool)
+
+    def split(self, values: Array, modes: int) -> tuple[Array, AffineChange]:
+        """Return coordinates (b, modes) and affine parameters of variants (b, d)."""
+        t = np.zeros((len(values), modes))
+        changes = {}
+        for name, column in zip(self.names, values.T, strict=True):
+            if name in RANGES:
+                changes[name] = column
+            else:
+                t[:, int(name[1:]) - 1] = column
+        return t, AffineChange(**changes)
+
+    def outside(self, values: Array) -> list[str]:
+        """Say of each variant (b, d) which factor leaves its bounds; "" if none does.
+
+        Coordinates may lie in the box of the bounds or in the data's ellipsoid.
+        """
+        beyond = (values < self.low) | (values > self.high)
+        shape = self.shape & (self.spread > 0)
+        scaled = values[:, shape] / self.spread[shape]
+        within = np.linalg.norm(scaled, axis=1) <= self.reach * (1.0 + 1e-12)
+        beyond &= ~(within[:, None] & shape)
+        first, any_beyond = np.argmax(beyond, axis=1), np.any(beyond, axis=1).tolist()
+        return [
+            f"{self.names[j]} = {row[j]:.6g} is outside {self.low[j]:.6g} to {self.high[j]:.6g}"
+            if leaves
+            else ""
+            for row, j, leaves in zip(values, first, any_beyond, strict=True)
+        ]
+
+
+def factors(
+    space: ShapeSpace | None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    *,
+    reach: float = 1.0,
+) -> Factors:
+    """Return what varies: all coordinates of a space, and what bounds are given for.
+
+    Parameters
+    ----------
+    space : ShapeSpace, optional
+        Whose coordinates vary between the least and largest of its data.
+    bounds : mapping of str to (low, high), optional
+        Bounds of the user's own, of coordinates or affine parameters; equal ones hold a factor.
+    reach : float
+        Share of the space's bounds and of its ellipsoid that is used.
+
+    Raises
+    ------
+    DesignError
+        If a name is unknown, or bounds are reversed or not allowed.
+    """
+    bounds = dict(bounds or {})
+    if not 0 < reach <= 1:
+        raise DesignError(f"reach: got {reach:g}, allowed is more than 0 and at most 1")
+    names = [] if space is None else [f"t{j + 1}" for j in range(space.dimension)]
+    allowed = [*names, *RANGES]
+    for name, (low, high) in bounds.items():
+        if name not in allowed:
+            raise DesignError(f"factor {name!r}: allowed are {', '.join(allowed)}")
+        if not low <= high:
+            raise DesignError(f"{name}: bounds are {low:g} to {high:g}, must not fall")
+        if name in RANGES and not (RANGES[name][0] <= low and high <= RANGES[name][1]):
+            least, most = RANGES[name]
+            raise DesignError(
+                f"{name}: bounds are {low:g} to {high:g}, allowed is {least:.4g} to {most:.4g}"
+            )
+    lows: list[float] = []
+    highs: list[float] = []
+    spread: list[float] = []
+    extent = 0.0
+    if space is not None:
+        for j, name in enumerate(names):
+            given = bounds.get(name)
+            least, most = given or (reach * space.lower[j], reach * space.upper[j])
+            lows.append(float(least))
+            highs.append(float(most))
+            spread.append(0.0 if given else float(np.sqrt(space.variances[j])))
+        extent = reach * space.extent
+    for name in RANGES:
+        if name in bounds:
+            names.append(name)
+            lows.append(bounds[name][0])
+            highs.append(bounds[name][1])
+            spread.append(0.0)
+    if not names:
+        raise DesignError("nothing varies: give a shape space, or bounds of a factor")
+    return Factors(tuple(names), np.array(lows), np.array(highs), np.array(spread), extent)
+
+
+Points = Callable[[int, int, int], Array]
+Region = Callable[[Factors, Array], Array]
+
+
+def _sobol(count: int, dimension: int, seed: int) -> Array:
+    from scipy.stats import qmc
+
+    power = int(np.ceil(np.log2(max(count, 1))))  # whole powers of two keep the balance
+    points: Array = qmc.Sobol(dimension, rng=np.random.default_rng(seed)).random_base2(power)
+    return points[:count]
+
+
+def _latin(count: int, dimension: int, seed: int) -> Array:
+    from scipy.stats import qmc
+
+    points: Array = qmc.LatinHypercube(dimension, rng=np.random.default_rng(seed)).random(count)
+    return points
+
+
+def _independent(count: int, dimension: int, seed: int) -> Array:
+    return np.stack([_point(seed, i, 0, dimension) for i in range(count)])
+
+
+def _point(seed: int, index: int, attempt: int, dimension: int) -> Array:
+    """Return the point of the unit cube of one variant at one attempt."""
+    key = np.random.SeedSequence(seed, spawn_key=(index, attempt))
+    point: Array = np.random.Generator(np.random.PCG64(key)).random(dimension)
+    return point
+
+
+def _corners(count: int, dimension: int, seed: int) -> Array:  # noqa: ARG001
+    """Run through the box from corner to opposite corner, along each diagonal in turn."""
+    lines = min(2 ** (dimension - 1), DIAGONALS)
+    line, step = np.arange(count) % lines, np.arange(count) // lines
+    steps = max(1, -(-count // lines) - 1)
+    along = np.clip(step / steps, 0.0, 1.0)
+    bits = (line[:, None] >> np.arange(dimension)) & 1
+    points: Array = np.where(bits == 1, 1.0 - along[:, None], along[:, None])
+    return points
+
+
+def _box(what: Factors, unit: Array) -> Array:
+    return what.low + unit * (what.high - what.low)
+
+
+def _ellipsoid(what: Factors, unit: Array) -> Array:
+    """Carry points uniform in a cube to points uniform in the ellipsoid of the data.
+
+    Normal deviates give the direction, and the distribution function of their length, which is
+    that of chi, a radius whose r-th power is uniform.  What has no spread fills its box.
+    """
+    from scipy.stats import chi2, norm
+
+    result, shape = _box(what, unit), what.spread > 0
+    r = int(np.count_nonzero(shape))
+    if r:
+        normal = norm.ppf(np.clip(unit[:, shape], 1e-15, 1 - 1e-15))
+        squares = np.sum(normal**2, axis=1, keepdims=True)
+        radius = chi2.cdf(squares, r) ** (1.0 / r) / np.sqrt(squares)
+        result[:, shape] = what.reach * radius * normal * what.spread[shape]
+    return result
+
+
+def _normal(what: Factors, unit: Array) -> Array:
+    """Carry points of a cube to the normal distribution of the data; the rest fills its box."""
+    from scipy.stats import norm
+
+    result, shape = _box(what, unit), what.spread > 0
+    result[:, shape] = norm.ppf(np.clip(unit[:, shape], 1e-15, 1 - 1e-15)) * what.spread[shape]
+    return result
+
+
+DESIGNS: dict[str, tuple[str, Points, Region]] = {
+    "sobol": ("Sobol points (scrambled) in the box of the bounds", _sobol, _box),
+    "lhs": ("a Latin hypercube in the box", _latin, _box),
+    "box": ("independent, uniform in the box", _independent, _box),
+    "ellipsoid": ("independent, uniform in the ellipsoid of the data", _independent, _ellipsoid),
+    "normal": ("independent, normal with the data's covariance", _independent, _normal),
+    "sweep": ("from corner to opposite corner of the box, each diagonal in turn", _corners, _box),
+}
+FIXED = ("sweep", "table")  # designs whose points are wanted as they are
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A plan of variants.
+
+    Parameters
+    ----------
+    what : Factors
+        What varies.
+    kind : str
+        One of `DESIGNS`, or "table".
+    seed : int
+        Of the draws, not negative.
+    values : (count, d) array
+        Where each variant lies, first attempts.
+    """
+
+    what: Factors
+    kind: str
+    seed: int
+    values: Array = field(repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", readonly(self.values))
+
+    @classmethod
+    def of(cls, what: Factors, kind: str, count: int, seed: int) -> "Design":
+        """Plan `count` variants.
+
+        Raises
+        ------
+        DesignError
+            If there is no such kind, or count or seed are out of range.
+        """
+        if kind not in DESIGNS:
+            raise DesignError(f"design: got {kind!r}, allowed are {', '.join(DESIGNS)}")
+        if not 1 <= count <= 10**7:
+            raise DesignError(f"count: got {count}, allowed is 1 to 10000000")
+        if seed < 0:
+            raise DesignError(f"seed: got {seed}, must not be negative")
+        _, points, region = DESIGNS[kind]
+        return cls(what, kind, seed, region(what, points(count, len(what.names), seed)))
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def redraws(self) -> bool:
+        """Whether a variant that is not sound may be drawn again."""
+        return self.kind not in FIXED
+
+    def redrawn(self, index: Indices, attempt: int) -> Array:
+        """Return other values (m, d) of some variants: independent draws in the same region."""
+        region = DESIGNS[self.kind][2]
+        dimension = len(self.what.names)
+        unit = [_point(self.seed, int(i), attempt, dimension) for i in index]
+        return region(self.what, np.stack(unit))
+
+
+def tabulated(space: ShapeSpace | None, columns: Mapping[str, Sequence[float] | Array]) -> Design:
+    """Return the design that a table of the user's own lists.
+
+    Parameters
+    ----------
+    space : ShapeSpace, optional
+        Whose coordinates t1, t2, ... may be columns.
+    columns : mapping of str to (count,) arrays
+        Names of factors and their values; radians.
+
+    Raises
+    ------
+    DesignError
+        If a column is unknown, of another length, or not finite.
+    """
+    modes = 0 if space is None else space.dimension
+    allowed = [*(f"t{j + 1}" for j in range(modes)), *RANGES]
+    names = [name for name in allowed if name in columns]
+    unknown = [name for name in columns if name not in allowed]
+    if unknown or not names:
+        given = unknown[0] if unknown else "no factor"
+        raise DesignError(f"table: got {given!r}, allowed columns are {', '.join(allowed)}")
+    values = np.stack([np.asarray(columns[name], dtype=np.float64) for name in names], axis=1)
+    bad = np.argwhere(~np.isfinite(values))
+    if bad.size:
+        row, column = bad[0]
+        raise DesignError(f"table: row {row + 1}, {names[column]}: must be a number")
+    if not len(values):
+        raise DesignError("table: holds no rows")
+    for name, column in zip(names, values.T, strict=True):
+        low, high = RANGES.get(name, (-np.inf, np.inf))
+        wrong = np.flatnonzero((column < low) | (column > high))
+        if wrong.size:
+            raise DesignError(
+                f"table: row {wrong[0] + 1}, {name}: got {column[wrong[0]]:g}, allowed is "
+                f"{low:.4g} to {high:.4g}"
+            )
+    known = factors(space, {name: RANGES[name] for name in names if name in RANGES})
+    at = [known.names.index(name) for name in names]
+    what = Factors(tuple(names), known.low[at], known.high[at], known.spread[at], known.reach)
+    return Design(what, "table", 0, values)

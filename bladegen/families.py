@@ -1,0 +1,266 @@
+"""Families: many perturbed variants of one blade, planned by a design and tested.
+
+`family` plans variants and gives them one after the other as blades; `Family.block` makes the
+sections of many at once (`batch`), for files and for learning.  A variant whose sections cross
+themselves, lose their thickness, or whose coordinates leave the data, is drawn again up to a
+limit, or kept and marked.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from bladegen.arrays import Array, Indices, Mask
+from bladegen.batch import FAULTS, Batch, SectionBatch
+from bladegen.blade import Blade
+from bladegen.deformation import RANGES, AffineChange, Window
+from bladegen.designs import Design, factors
+from bladegen.errors import FamilyError
+from bladegen.files import safe_stem
+from bladegen.pga import ShapeSpace
+
+__all__ = ["BLOCK", "POLICIES", "Block", "Family", "family"]
+
+BLOCK = 64  # variants made at once; what a run may lose
+TRIES = 100  # draws of one variant before it is kept and marked
+THINNEST = 0.05  # of the chord; a thinner section is no blade's
+SPANS = 100
+POLICIES = ("redraw", "keep")
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Neighbouring variants of a family.
+
+    Parameters
+    ----------
+    index : (b,) array of int
+        Their places in the family.
+    values : (b, d) array
+        Values of the factors [rad].
+    attempts : (b,) array of int
+        How many draws each took.
+    reasons : tuple of str
+        What is wrong with each; "" if nothing is.
+    batch : Batch
+        Their sections.
+    """
+
+    index: Indices
+    values: Array
+    attempts: Indices
+    reasons: tuple[str, ...]
+    batch: Batch
+
+    @property
+    def valid(self) -> Mask:
+        """Which variants are sound, (b,)."""
+        return np.array([not reason for reason in self.reasons])
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """A planned family of variants.  `family` makes one.
+
+    Parameters
+    ----------
+    blade : Blade
+        The baseline.
+    space : ShapeSpace, optional
+        Modes of deformation.
+    design : Design
+        Which variants.
+    window : Window
+        Where along the span they act.
+    eta : (k,) array
+        Span fractions of the sections that are made and tested.
+    invalid : str
+        "redraw" or "keep" variants that are not sound.
+    tries : int
+        Draws of one variant before it is kept and marked.
+    thinnest : float
+        Least relative thickness of a sound section.
+    """
+
+    blade: Blade
+    space: ShapeSpace | None
+    design: Design
+    window: Window
+    eta: Array
+    invalid: str = "redraw"
+    tries: int = TRIES
+    thinnest: float = THINNEST
+
+    def __post_init__(self) -> None:
+        if self.invalid not in POLICIES:
+            raise FamilyError(f"invalid: got {self.invalid!r}, allowed are {', '.join(POLICIES)}")
+        if self.tries < 1:
+            raise FamilyError(f"tries: got {self.tries}, must be at least 1")
+        if self.space is not None:  # the same test and the same words as for one variant
+            self.blade.untested(self.space, np.zeros(self.space.dimension), AffineChange())
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {entry.name: getattr(self, entry.name) for entry in fields(self)}
+
+    def __len__(self) -> int:
+        return len(self.design)
+
+    def __iter__(self) -> Iterator[Blade]:
+        for first in range(0, len(self), BLOCK):
+            index = np.arange(first, min(first + BLOCK, len(self)))
+            for place, values in zip(index, self._drawn(index), strict=True):
+                yield self._blade(int(place), values)
+
+    @cached_property
+    def _sections(self) -> SectionBatch:
+        return SectionBatch(self.blade, self.space, self.window, self.eta)
+
+    def block(self, index: Indices, *, dtype: type = np.float64) -> Block:
+        """Make the sections of some variants, drawn again where they are not sound.
+
+        Parameters
+        ----------
+        index : (b,) array of int
+            Which variants.
+        dtype : type
+            Of the sections.
+        """
+        values = self.design.values[index]
+        batch = self._sections.evaluate(*self._split(values), dtype=dtype)
+        reasons = self._reasons(values, batch.faults, batch.relative_thickness)
+        values, attempts, reasons = self._redrawn(index, values, reasons)
+        again = np.flatnonzero(attempts > 1)
+        if again.size:
+            batch.take(again, self._sections.evaluate(*self._split(values[again]), dtype=dtype))
+        return Block(index, values, attempts, tuple(reasons), batch)
+
+    def variant(self, place: int) -> Blade:
+        """Return one variant as a blade, whether it is sound or not."""
+        if not 0 <= place < len(self):
+            raise FamilyError(f"variant: got {place}, allowed is 0 to {len(self) - 1}")
+        return self._blade(place, self._drawn(np.array([place]))[0])
+
+    def name(self, place: int) -> str:
+        """Return the name of a variant; names sort as their places do."""
+        digits = max(5, len(str(len(self) - 1)))
+        return f"{safe_stem(self.blade.name)}-{place:0{digits}d}"
+
+    def _blade(self, place: int, values: Array) -> Blade:
+        t, change = self._split(values[None])
+        single = {name: float(np.ravel(getattr(change, name))[0]) for name in RANGES}
+        return self.blade.untested(
+            self.space,
+            t[0],
+            replace(change, **single),
+            window=self.window,
+            allow_extrapolation=True,
+            name=self.name(place),
+        )
+
+    def _split(self, values: Array) -> tuple[Array, AffineChange]:
+        return self.design.what.split(values, self._sections.modes)
+
+    def _drawn(self, index: Indices) -> Array:
+        """Return the values (b, d) of variants, after all redrawing."""
+        values = self.design.values[index]
+        return self._redrawn(index, values, self._tested(values))[0]
+
+    def _redrawn(
+        self, index: Indices, values: Array, reasons: list[str]
+    ) -> tuple[Array, Indices, list[str]]:
+        """Draw again what is not sound; return values, numbers of draws and what is left."""
+        values, reasons = values.copy(), list(reasons)
+        attempts = np.ones(len(index), dtype=np.int64)
+        if self.invalid == "keep" or not self.design.redraws:
+            return values, attempts, reasons
+        again = np.flatnonzero([bool(reason) for reason in reasons])
+        for attempt in range(1, self.tries):
+            if not again.size:
+                break
+            values[again] = self.design.redrawn(index[again], attempt)
+            attempts[again] += 1
+            for row, reason in zip(again, self._tested(values[again]), strict=True):
+                reasons[row] = reason
+            again = again[[bool(reasons[row]) for row in again]]
+        return values, attempts, reasons
+
+    def _tested(self, values: Array) -> list[str]:
+        """Say what is wrong with variants (b, d), without making their sections."""
+        return self._reasons(values, *self._sections.faults(*self._split(values)))
+
+    def _reasons(self, values: Array, faults: Indices, thickness: Array) -> list[str]:
+        """Say what is wrong with variants (b, d), first thing first; "" if nothing is."""
+        reasons = self.design.what.outside(values)
+        for row in np.flatnonzero(faults.any(axis=1)):
+            k = int(np.argmax(faults[row] > 0))
+            reasons[row] = reasons[row] or f"{FAULTS[faults[row, k]]} at eta = {self.eta[k]:.4f}"
+        for row in np.flatnonzero(thickness.min(axis=1) < self.thinnest):
+            k = int(np.argmin(thickness[row]))
+            reasons[row] = reasons[row] or (
+                f"relative thickness {thickness[row, k]:.4f} at eta = {self.eta[k]:.4f} is below "
+                f"{self.thinnest:g}"
+            )
+        return reasons
+
+
+def family(
+    blade: Blade,
+    space: ShapeSpace | None = None,
+    *,
+    count: int = 100,
+    seed: int = 0,
+    design: str | Design = "ellipsoid",
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    reach: float = 1.0,
+    window: Window | None = None,
+    spans: int = SPANS,
+    invalid: str = "redraw",
+    tries: int = TRIES,
+) -> Family:
+    """Plan a family of perturbed blades; iterate over it for the blades.
+
+    Parameters
+    ----------
+    blade : Blade
+        The baseline.
+    space : ShapeSpace, optional
+        Modes of deformation, such as `ShapeSpace.bundled()`; all its coordinates vary.
+    count, seed : int
+        How many variants, and the seed of the draws: variant i is the same for the same seed.
+    design : str or Design
+        One of `designs.DESIGNS`, or a design of one's own (`designs.tabulated`).
+    bounds : mapping of str to (low, high), optional
+        What else varies and between which bounds: see `designs.factors`; twist in radians.
+    reach : float
+        Share of the space's bounds that is used.
+    window : Window, optional
+        Where along the span they act; by default as for `Blade.perturbed`.
+    spans : int
+        At how many spans sections are made and tested.
+    invalid : str
+        "redraw" variants that are not sound, up to `tries` draws, or "keep" them, marked.
+
+    Raises
+    ------
+    DesignError, FamilyError, PerturbationError
+        If something asked for is not there or out of range.
+
+    >>> import bladegen as bg
+    >>> blade = bg.Blade.from_definition(bg.read("dtu10mw"))
+    >>> [variant.name for variant in bg.family(blade, bg.ShapeSpace.bundled(), count=2, seed=7)]
+    ['dtu10mw-00000', 'dtu10mw-00001']
+    """
+    if not isinstance(design, Design):
+        design = Design.of(factors(space, bounds, reach=reach), design, count, seed)
+    return Family(
+        blade,
+        space,
+        design,
+        window or Window.beyond_circles(blade.definition.stations),
+        blade.stations(spans),
+        invalid,
+        tries,
+    )

@@ -1,0 +1,104 @@
+import pickle
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import bladegen as bg
+from bladegen.designs import tabulated
+from bladegen.errors import BladegenError
+
+SPACE = bg.ShapeSpace.bundled()
+
+
+@cache
+def blade(name="nrel5mw"):
+    return bg.Blade.from_definition(bg.read(name))
+
+
+def test_blades_of_a_family_have_the_sections_of_its_blocks():
+    family = bg.family(
+        blade(), SPACE, count=4, seed=7, spans=40, bounds={"twist": (-0.1, 0.1)}, reach=0.5
+    )
+    block = family.block(np.arange(4))
+    assert block.valid.all()
+    for variant, sections in zip(family, block.batch.sections, strict=True):
+        assert_allclose(variant.sections(family.eta), sections, rtol=0, atol=2e-9)
+    assert len(family) == 4
+    assert family.variant(2).name == "nrel5mw-00002"
+
+
+def test_variants_depend_on_seed_and_place_alone():
+    many = bg.family(blade(), SPACE, count=30, seed=7, spans=40)
+    few = bg.family(blade(), SPACE, count=3, seed=7, spans=40)
+    other = bg.family(blade(), SPACE, count=3, seed=8, spans=40)
+    values = many.block(np.array([2, 0, 1])).values
+    assert_array_equal(values[[1, 2, 0]], few.block(np.arange(3)).values)
+    assert not np.allclose(values[1], other.block(np.arange(3)).values[0])
+
+
+def test_variants_that_are_not_sound_are_drawn_again_or_kept_and_marked():
+    asked = {"count": 24, "seed": 1, "spans": 60}
+    kept = bg.family(blade(), SPACE, **asked, invalid="keep").block(np.arange(24))
+    redrawn = bg.family(blade(), SPACE, **asked).block(np.arange(24))
+    assert 0 < kept.valid.sum() < 24
+    assert redrawn.valid.all()
+    assert_array_equal(kept.attempts, 1)
+    assert_array_equal(redrawn.attempts > 1, ~kept.valid)
+    same = kept.valid
+    assert_array_equal(kept.values[same], redrawn.values[same])
+    assert_allclose(kept.batch.sections[same], redrawn.batch.sections[same], rtol=0, atol=1e-9)
+    assert any("crosses itself at eta" in reason for reason in kept.reasons)
+
+
+def test_tries_are_limited():
+    hopeless = {"t1": (5.0, 6.0)}
+    family = bg.family(blade(), SPACE, count=2, tries=3, bounds=hopeless, spans=40)
+    block = family.block(np.arange(2))
+    assert not block.valid.any()
+    assert_array_equal(block.attempts, 3)
+
+
+def test_thin_and_outlying_variants_say_so():
+    table = tabulated(SPACE, {"t1": [0.0, 9.0, 0.0], "thickness": [1.0, 1.0, 0.25]})
+    block = bg.family(blade(), SPACE, design=table, spans=40).block(np.arange(3))
+    assert block.reasons[0] == ""
+    assert block.reasons[1].startswith("t1 = 9 is outside")
+    assert "is below 0.05" in block.reasons[2]
+    assert_array_equal(block.attempts, 1)
+
+
+def test_families_and_their_blades_can_be_sent_to_other_processes():
+    family = bg.family(blade(), SPACE, count=2, seed=1, spans=40, reach=0.3)
+    sections = family.block(np.arange(2)).batch.sections
+    again = pickle.loads(pickle.dumps(family))
+    assert_array_equal(again.block(np.arange(2)).batch.sections, sections)
+    variant = family.variant(1)
+    before = variant.sections([0.5])
+    assert_array_equal(pickle.loads(pickle.dumps(variant)).sections([0.5]), before)
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"invalid": "drop"}, "allowed are redraw, keep"),
+        ({"tries": 0}, "tries: got 0"),
+        ({"spans": 1}, "stations: got 1"),
+        ({"design": "grid"}, "design: got 'grid'"),
+    ],
+)
+def test_what_cannot_be_is_refused(asked, said):
+    with pytest.raises(BladegenError, match=said):
+        bg.family(blade(), SPACE, **asked)
+
+
+def test_other_landmarks_than_the_spaces_are_refused():
+    coarse = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
+    with pytest.raises(BladegenError, match="401 landmarks, the blade of 101"):
+        bg.family(coarse, SPACE)
+
+
+def test_a_variant_beyond_the_family_is_refused():
+    with pytest.raises(BladegenError, match="allowed is 0 to 1"):
+        bg.family(blade(), SPACE, count=2).variant(2)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import bladegen as bg
-from bladegen import cad, properties
+from bladegen import cad, cad_files, properties
 
 LOFT_SECTIONS, LOFT_LANDMARKS = 40, 101
 POINTS = 12
@@ -64,7 +64,7 @@ def main() -> None:
         solid = cad.solid(blade)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "blade.step"
-            cad.write_step(solid, path)
+            cad_files.write_step(solid, path)
             spent, size = time.perf_counter() - start, path.stat().st_size
         print(
             f"{name:9s} net    {len(solid.net.v):8d}  {spent:5.2f}  "

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen import affine, grassmann
+from bladegen import affine, grassmann, polygons
 from bladegen.arrays import Array, ArrayLike, Indices, Mask, readonly
 from bladegen.blade import Blade
 from bladegen.crossing import crossing_sections
@@ -47,6 +47,9 @@ class Batch:
         [m], [rad], of the chord.
     faults : (b, k) array of int
         What is wrong with each section, a place in `FAULTS`.
+    measures : (b, k, 7) array, optional
+        `polygons.MEASURES` of the sections [m], in axes along the chord from the leading edge
+        and normal to it.
     """
 
     sections: Array
@@ -54,11 +57,14 @@ class Batch:
     twist: Array
     relative_thickness: Array
     faults: Indices
+    measures: Array | None = None
 
     def take(self, rows: Indices, other: "Batch") -> None:
         """Put the variants of another batch in the place of some."""
         for entry in fields(self):
-            getattr(self, entry.name)[rows] = getattr(other, entry.name)
+            values = getattr(self, entry.name)
+            if values is not None:
+                values[rows] = getattr(other, entry.name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +158,14 @@ class SectionBatch:
         result[:, :, -1] = b[:, None]
         return result
 
-    def evaluate(self, t: Array, change: AffineChange, *, dtype: type = np.float64) -> Batch:
+    def evaluate(
+        self,
+        t: Array,
+        change: AffineChange,
+        *,
+        dtype: type = np.float64,
+        measured: bool = False,
+    ) -> Batch:
         """Make the sections of variants.
 
         Parameters
@@ -163,6 +176,8 @@ class SectionBatch:
             With arrays (b,) where variants differ.
         dtype : type
             Of the sections: float64 or float32.
+        measured : bool
+            Measure areas, centroids and so on.
         """
         count = len(t)
         chunks = [slice(first, first + CHUNK) for first in range(0, count, CHUNK)]
@@ -178,6 +193,7 @@ class SectionBatch:
         unit = raw @ A
         unit[:, :, -1] += c
         sections: Array = np.empty((count, len(self.eta), len(self.blade.u), 3), dtype=dtype)
+        measures = np.empty((count, len(self.eta), len(polygons.MEASURES)))
         homogeneous = np.ones((min(CHUNK, count), *sections.shape[1:]))
         for chunk in chunks:
             profiles = self.features.points(unit[:, chunk])
@@ -185,8 +201,17 @@ class SectionBatch:
             finished = self.blade.trailing_edge(flat, chord[chunk].reshape(-1))
             points = homogeneous[: len(profiles)]
             points[..., :2] = finished.reshape(profiles.shape)
+            if measured:
+                measures[chunk] = polygons.measure(points[..., :2] * chord[chunk][..., None, None])
             np.matmul(points, to_space[chunk], out=sections[chunk], casting="same_kind")
-        return Batch(sections, chord, twist, np.array(target.T), np.array(faults.T))
+        return Batch(
+            sections,
+            chord,
+            twist,
+            np.array(target.T),
+            np.array(faults.T),
+            measures if measured else None,
+        )
 
     def faults(self, t: Array, change: AffineChange) -> tuple[Indices, Array]:
         """Return what is wrong with the sections of variants, and their relative thickness.
@@ -208,7 +233,7 @@ class SectionBatch:
         """Return coefficients, the maps to size, own thicknesses, and what is still open."""
         raw = self.coefficients(t)
         measures = self.features.measure(raw)
-        A, c = resizing(
+        A, c, passed = resizing(
             measures.noses,
             measures.noses[0],
             measures.trailing_edge,
@@ -216,7 +241,7 @@ class SectionBatch:
             target,
         )
         own = measures.thickness / measures.chord
-        return raw, A, c, own, measures.unsure, ~self.features.proved_sound(raw)
+        return raw, A, c, own, measures.unsure | passed, ~self.features.proved_sound(raw)
 
     def _settle(
         self, raw: Array, target: Array, A: Array, c: Array, own: Array, unsure: Mask

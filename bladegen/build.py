@@ -13,7 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from bladegen import __version__, cad, checks, exporters, mesh
+from bladegen import __version__, cad, cad_files, checks, exporters, mesh
 from bladegen.blade import Blade
 from bladegen.errors import ToleranceError
 from bladegen.files import folder, replacing, safe_stem
@@ -23,7 +23,7 @@ __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
 DEFAULT_FORMATS = ("step", "stl", "glb", "png")
 LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk")
 FROM_FILE = ("solids", "faces", "valid", "closed", "area_m2", "bounds_m")
-_SOLIDS, _MESHES = (".step", ".stp"), (".stl", ".glb", ".ply", ".obj", ".3mf")
+_SOLIDS, _MESHES = tuple(cad_files.READERS), (".stl", ".glb", ".ply", ".obj", ".3mf")
 
 
 def build(
@@ -113,7 +113,7 @@ def report_path(target: Path, name: str) -> Path:
 def _solid(products: exporters.Products, path: Path, wanted: float) -> dict[str, Any]:
     """Measure a STEP file as it lies on the disk, against the solid and the blade."""
     solid = products.solid
-    again = checks.solid_figures(cad.read_step(path), quick=True)
+    again = checks.solid_figures(cad_files.read(path), quick=True)
     before = cad.volume(solid.shape, cad.COARSE_VOLUME) / cad.MILLIMETRES**3
     volume = solid.net.volume()
     deviation = solid.deviation

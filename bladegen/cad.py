@@ -1,4 +1,4 @@
-"""A blade's B-spline net to a closed solid with named faces, and to a STEP file.
+"""A blade's B-spline net to a closed solid with named faces.
 
 The net is handed to OCCT as poles, knots and multiplicities, cut at the leading edge into a
 suction and a pressure side, and closed by a trailing-edge strip, a root plane and a tip.
@@ -6,10 +6,8 @@ Solids are in millimetres, as STEP files of machine parts are; everything else i
 cadquery and OCP are imported when first needed.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,11 +24,9 @@ __all__ = [
     "area",
     "flat_tip",
     "is_valid",
-    "read_step",
     "round_tip",
     "solid",
     "volume",
-    "write_step",
 ]
 
 MILLIMETRES = 1000.0
@@ -121,6 +117,7 @@ def solid(
     *,
     tolerance: float = DEFAULT_TOLERANCE,
     sections: int | None = None,
+    spans: Array | None = None,
     tip: Tip = flat_tip,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Solid:
@@ -135,6 +132,8 @@ def solid(
         was reached.
     sections : int, optional
         Use exactly so many sections instead.
+    spans : (k,) array, optional
+        Sections to begin with (`net.fitted`).
     tip : callable
         `flat_tip` or `round_tip`.
     progress : callable
@@ -145,7 +144,7 @@ def solid(
     CadError
         If the result is not one valid closed solid.
     """
-    net, deviation = fitted(blade, tolerance, sections=sections, progress=progress)
+    net, deviation = fitted(blade, tolerance, sections=sections, spans=spans, progress=progress)
     gap = np.linalg.norm(net.poles[0] - net.poles[-1], axis=-1)
     blunt = bool(gap.max() > CLOSED_EDGE)
     if blunt and gap.min() <= CLOSED_EDGE:
@@ -163,55 +162,6 @@ def solid(
     faces += [("root", _cap(scaled, 0.0, blunt)), *tip(scaled, blunt)]
     shape, named = _closed(faces, blade.name)
     return Solid(shape, named, net, deviation, blade.name)
-
-
-def write_step(solid: Solid, path: Path) -> None:
-    """Write a solid as STEP AP242 in millimetres, its faces named.
-
-    Raises
-    ------
-    CadError
-        If OCCT cannot write the file.
-    """
-    from OCP.Interface import Interface_Static
-    from OCP.STEPConstruct import STEPConstruct
-    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
-    from OCP.TCollection import TCollection_HAsciiString
-
-    with _quietly():
-        STEPControl_Controller.Init_s()  # before it, the settings below have no effect
-        for setting, value in (
-            ("write.step.schema", "AP242DIS"),
-            ("write.step.unit", "MM"),
-            ("write.step.product.name", _ascii(solid.name)),
-        ):
-            if not Interface_Static.SetCVal_s(setting, value):
-                raise CadError(f"{path}: OCCT does not take {setting} = {value}")
-        writer = STEPControl_Writer()
-        writer.Transfer(solid.shape, STEPControl_AsIs)
-        process = writer.WS().TransferWriter().FinderProcess()
-        for name, face in solid.faces:
-            STEPConstruct.FindEntity_s(process, face).SetName(TCollection_HAsciiString(name))
-        status = writer.Write(str(path))
-    if status.name != "IFSelect_RetDone":
-        raise CadError(f"{path}: OCCT could not write the STEP file ({status.name})")
-
-
-def read_step(path: Path) -> Any:
-    """Read a STEP file's shape [mm].
-
-    Raises
-    ------
-    CadError
-        If the file holds no shape that OCCT understands.
-    """
-    from OCP.STEPControl import STEPControl_Reader
-
-    with _quietly():
-        reader = STEPControl_Reader()
-        if reader.ReadFile(str(path)).name != "IFSelect_RetDone" or not reader.TransferRoots():
-            raise CadError(f"{path}: not a STEP file that OCCT can read")
-        return reader.OneShape()
 
 
 def volume(shape: Any, accuracy: float = VOLUME_TOLERANCE) -> float:
@@ -254,7 +204,6 @@ def _surface(poles: Array, u_knots: Array, v_knots: Array) -> Any:
     from OCP.Geom import Geom_BSplineSurface
     from OCP.gp import gp_Pnt
     from OCP.TColgp import TColgp_Array2OfPnt
-    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 
     rows, columns = poles.shape[:2]
     points = TColgp_Array2OfPnt(1, rows, 1, columns)
@@ -262,20 +211,34 @@ def _surface(poles: Array, u_knots: Array, v_knots: Array) -> Any:
         for j, (x, y, z) in enumerate(row, start=1):
             points.SetValue(i, j, gp_Pnt(x, y, z))
 
-    arrays = []
-    for knots in (u_knots, v_knots):
-        values, counts = np.unique(knots, return_counts=True)
-        reals = TColStd_Array1OfReal(1, len(values))
-        integers = TColStd_Array1OfInteger(1, len(values))
-        for i, (value, count) in enumerate(
-            zip(values.tolist(), counts.tolist(), strict=True), start=1
-        ):
-            reals.SetValue(i, value)
-            integers.SetValue(i, count)
-        arrays.append((reals, integers))
-    (u, mu), (v, mv) = arrays
+    (u, mu), (v, mv) = _knots(u_knots), _knots(v_knots)
     degrees = len(u_knots) - rows - 1, len(v_knots) - columns - 1
     return Geom_BSplineSurface(points, u, v, mu, mv, *degrees, False, False)
+
+
+def _curve(poles: Array, knots: Array) -> Any:
+    """Hand a row of poles to OCCT, as `_surface` does a net."""
+    from OCP.Geom import Geom_BSplineCurve
+    from OCP.gp import gp_Pnt
+    from OCP.TColgp import TColgp_Array1OfPnt
+
+    points = TColgp_Array1OfPnt(1, len(poles))
+    for i, (x, y, z) in enumerate(poles.tolist(), start=1):
+        points.SetValue(i, gp_Pnt(x, y, z))
+    return Geom_BSplineCurve(points, *_knots(knots), len(knots) - len(poles) - 1, False)
+
+
+def _knots(knots: Array) -> tuple[Any, Any]:
+    """Return distinct knots and their multiplicities as OCCT's arrays."""
+    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+
+    values, counts = np.unique(knots, return_counts=True)
+    reals = TColStd_Array1OfReal(1, len(values))
+    integers = TColStd_Array1OfInteger(1, len(values))
+    for i, (value, count) in enumerate(zip(values.tolist(), counts.tolist(), strict=True), start=1):
+        reals.SetValue(i, value)
+        integers.SetValue(i, count)
+    return reals, integers
 
 
 def _face(surface: Any) -> Any:
@@ -299,10 +262,10 @@ def _line(start: Array, end: Array) -> Any:
 
 def _cap(net: SurfaceNet, v: float, blunt: bool) -> Any:
     """Make the plane face inside the section at the root (v = 0) or tip (v = 1)."""
-    suction, pressure = (_surface(h.poles, h.u_knots, h.v_knots) for h in net.halves())
-    edges = [_edge(suction.VIso(v)), _edge(pressure.VIso(v))]
+    end = 0 if v == 0.0 else -1
+    edges = [_edge(_curve(half.poles[:, end], half.u_knots)) for half in net.halves()]
     if blunt:
-        row = net.poles[:, 0 if v == 0.0 else -1]
+        row = net.poles[:, end]
         edges.append(_line(row[-1], row[0]))
     return _filled(edges)
 
@@ -343,24 +306,3 @@ def _closed(faces: list[tuple[str, Any]], name: str) -> tuple[Any, tuple[tuple[s
         for label, face in faces
     )
     return solid, named
-
-
-def _ascii(text: str) -> str:
-    """Return text as STEP files hold it."""
-    return text.encode("ascii", "replace").decode("ascii")
-
-
-@contextmanager
-def _quietly() -> Iterator[None]:
-    """Keep OCCT's remarks off the terminal; its failures are checked for."""
-    from OCP.Message import Message, Message_Gravity
-
-    printers = Message.DefaultMessenger_s().Printers()
-    levels = [printer.GetTraceLevel() for printer in printers]
-    for printer in printers:
-        printer.SetTraceLevel(Message_Gravity.Message_Fail)
-    try:
-        yield
-    finally:
-        for printer, level in zip(printers, levels, strict=True):
-            printer.SetTraceLevel(level)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen import affine, cad, mesh, properties
+from bladegen import affine, cad, cad_files, mesh, properties
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.crossing import crossing_sections
@@ -48,7 +48,7 @@ class Check:
 
 
 def check_file(path: Path) -> Check:
-    """Measure a STEP or mesh file that anyone made.
+    """Measure a CAD or mesh file that anyone made.
 
     Raises
     ------
@@ -199,9 +199,9 @@ _Reader = tuple[
     Callable[[Any], dict[str, Any]],
     tuple[tuple[str, str], ...],
 ]
-_SOLID: _Reader = ("solid", cad.read_step, solid_figures, _SOLID_NEEDS)
+_SOLID: _Reader = ("solid", cad_files.read, solid_figures, _SOLID_NEEDS)
 _MESH: _Reader = ("mesh", mesh.read, mesh_figures, _MESH_NEEDS)
 _READERS = {
-    **dict.fromkeys((".step", ".stp"), _SOLID),
+    **dict.fromkeys(cad_files.READERS, _SOLID),
     **dict.fromkeys((".stl", ".glb", ".ply", ".obj", ".3mf", ".off"), _MESH),
 }

@@ -2,13 +2,32 @@
 
 import json
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from bladegen import __version__, cli_space
+from bladegen.cli_family import family
+from bladegen.cli_options import (
+    BladeName,
+    EdgeOption,
+    Formats,
+    Json,
+    Landmarks,
+    PathKind,
+    PathOption,
+    Planes,
+    PlanesOption,
+    Stations,
+    TipKind,
+    TipOption,
+    Tolerance,
+    Unit,
+    UnitOption,
+    build_options,
+    read_blade,
+)
 from bladegen.errors import BladegenError
 from bladegen.terminal import (
     print_figures,
@@ -29,64 +48,8 @@ app = typer.Typer(
 )
 
 
-class PathKind(StrEnum):
-    """How stations are joined."""
-
-    geodesic = "geodesic"
-    spline = "spline"
-
-
-class TipKind(StrEnum):
-    """How the tip is closed."""
-
-    flat = "flat"
-    round = "round"
-
-
-class Unit(StrEnum):
-    """Units of mesh files."""
-
-    m = "m"
-    mm = "mm"
-
-
-class Planes(StrEnum):
-    """Which way section planes face."""
-
-    axis = "axis"
-    z = "z"
-
-
-BladeName = Annotated[
-    str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a windIO file.")
-]
 app.add_typer(cli_space.app, name="space")
-Formats = Annotated[
-    list[str] | None,
-    typer.Option("--format", help="step stl glb png ply obj 3mf vtp; may be repeated."),
-]
-Tolerance = Annotated[
-    str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
-]
-Stations = Annotated[int, typer.Option(help="Sections of the meshes.")]
-TipOption = Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")]
-UnitOption = Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ and VTP files.")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
-PathOption = Annotated[
-    PathKind, typer.Option("--path", help="Join stations by geodesics or by a smooth spline.")
-]
-PlanesOption = Annotated[
-    Planes, typer.Option("--planes", help="Section planes normal to the reference axis or to z.")
-]
-EdgeOption = Annotated[
-    str,
-    typer.Option(
-        "--trailing-edge",
-        metavar="LENGTH|given|sharp",
-        help="Least thickness of the trailing edge, such as 2mm; or as given; or sharp.",
-    ),
-]
+app.command()(family)
 
 
 def main() -> None:
@@ -165,8 +128,8 @@ def build(
     unit: UnitOption = Unit.m,
 ) -> None:
     """Build a blade: a STEP solid, meshes, a picture and a report."""
-    made = _blade(blade, landmarks, path, planes, trailing_edge)
-    options = _options(tolerance, stations, tip, unit)
+    made = read_blade(blade, landmarks, path, planes, trailing_edge)
+    options = build_options(tolerance, stations, tip, unit)
     _build(made, output, formats, options)
 
 
@@ -222,8 +185,8 @@ def perturb(
     from bladegen.texts import coordinates, span_window
 
     t = coordinates(pga or [])
-    options = _options(tolerance, stations, tip, unit)
-    made = _blade(blade, landmarks, path, planes, trailing_edge)
+    options = build_options(tolerance, stations, tip, unit)
+    made = read_blade(blade, landmarks, path, planes, trailing_edge)
     variant = made.perturbed(
         None if t is None else ShapeSpace.load(space) if space else ShapeSpace.bundled(),
         () if t is None else t,
@@ -256,7 +219,7 @@ def preview(
     from bladegen import preview as view
     from bladegen.files import replacing
 
-    made = _blade(blade, landmarks, path, planes, trailing_edge)
+    made = read_blade(blade, landmarks, path, planes, trailing_edge)
     if screenshot is None:
         view.show(made)
         return
@@ -277,7 +240,7 @@ def check(
     from bladegen.readers import SUFFIXES, bundled
 
     if file in bundled() or Path(file).suffix.lower() in SUFFIXES:
-        result = checks.check_blade(_blade(file, 401, PathKind.geodesic, Planes.axis, "2mm"))
+        result = checks.check_blade(read_blade(file, 401, PathKind.geodesic, Planes.axis, "2mm"))
     else:
         result = checks.check_file(Path(file))
     if as_json:
@@ -298,38 +261,6 @@ def check(
         print_findings(result.figures.get("findings", []))
     if result.problems:
         raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
-
-
-def _blade(source: str, landmarks: int, path: str, planes: Planes, edge: str) -> Any:
-    """Read and build a blade as the options say."""
-    from bladegen.blade import Blade
-    from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
-    from bladegen.planform import normal_to_axis, normal_to_z
-    from bladegen.readers import read
-    from bladegen.texts import metres
-
-    named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
-    return Blade.from_definition(
-        read(source),
-        landmarks=landmarks,
-        path=path,
-        planes={"axis": normal_to_axis, "z": normal_to_z}[planes],
-        trailing_edge=named.get(edge) or MinimumThickness(metres(edge, "trailing-edge")),
-    )
-
-
-def _options(tolerance: str, stations: int, tip: TipKind, unit: Unit) -> Any:
-    """Return how products are made, as the options say."""
-    from bladegen import cad
-    from bladegen.exporters import Options
-    from bladegen.texts import metres
-
-    return Options(
-        tolerance=metres(tolerance, "tolerance"),
-        stations=stations,
-        tip={"flat": cad.flat_tip, "round": cad.round_tip}[tip],
-        unit=unit,
-    )
 
 
 def _build(blade: Any, output: Path, formats: list[str] | None, options: Any) -> None:

@@ -10,6 +10,7 @@ __all__ = ["Crowding"]
 
 EVEN_SHARE = 0.35  # of the sections: spread evenly, so that no part of the span is left bare
 ROUNDING = 1e-12  # of the blade's size; second differences below are no bends
+DECIMALS = 9  # of spans: sums differ in their last digits with the number of threads
 SMOOTHING = 5  # samples over which the density is averaged
 
 
@@ -66,6 +67,6 @@ class Crowding:
         first = np.concatenate([[0], np.cumsum(inner + 1)[:-1]])
         within = np.arange(len(cells)) - first[cells]
         level = marks[cells] + np.diff(marks)[cells] * within / (inner + 1)[cells]
-        spans = np.interp(level, self.total, self.grid)
+        spans = np.round(np.interp(level, self.total, self.grid), DECIMALS)
         spans[within == 0] = fixed[:-1]
         return np.append(spans, fixed[-1])

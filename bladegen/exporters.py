@@ -10,7 +10,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from bladegen import cad, mesh, preview
+from bladegen import cad, cad_files, mesh, preview
+from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.files import replacing
@@ -47,6 +48,12 @@ class Options:
         Solids: `cad.flat_tip` or `cad.round_tip`.
     unit : str
         Meshes: "m" or "mm".  STEP and 3MF are always in millimetres, GLB in metres.
+    step_schema : str
+        STEP: "ap242" or "ap214".
+    timestamp : str, optional
+        STEP: the time in the header, ISO 8601, instead of now.
+    spans : (k,) array, optional
+        Solids: sections to begin with, such as those of a blade that is alike.
     """
 
     tolerance: float = cad.DEFAULT_TOLERANCE
@@ -54,10 +61,18 @@ class Options:
     stations: int = mesh.SECTIONS
     tip: cad.Tip = cad.flat_tip
     unit: str = "m"
+    step_schema: str = "ap242"
+    timestamp: str | None = None
+    spans: Array | None = None
 
     def __post_init__(self) -> None:
         if self.unit not in UNITS:
             raise ExportError(f"unit: got {self.unit!r}, allowed are {', '.join(UNITS)}")
+        if self.step_schema not in cad_files.STEP_SCHEMAS:
+            raise ExportError(
+                f"step_schema: got {self.step_schema!r}, allowed are "
+                f"{', '.join(cad_files.STEP_SCHEMAS)}"
+            )
         if not 0 < self.tolerance < 1:
             raise ExportError(
                 f"tolerance: got {self.tolerance:g} m, allowed is more than 0 and less than 1 m"
@@ -79,6 +94,7 @@ class Products:
             self.blade,
             tolerance=self.options.tolerance,
             sections=self.options.sections,
+            spans=self.options.spans,
             tip=self.options.tip,
             progress=self.progress,
         )
@@ -102,7 +118,18 @@ class Format:
 
 
 def _write_step(products: Products, path: Path) -> None:
-    cad.write_step(products.solid, path)
+    options = products.options
+    cad_files.write_step(
+        products.solid, path, schema=options.step_schema, timestamp=options.timestamp
+    )
+
+
+def _write_iges(products: Products, path: Path) -> None:
+    cad_files.write_iges(products.solid, path)
+
+
+def _write_brep(products: Products, path: Path) -> None:
+    cad_files.write_brep(products.solid, path)
 
 
 def _write_stl(products: Products, path: Path) -> None:
@@ -146,8 +173,11 @@ def _write_png(products: Products, path: Path) -> None:
 
 
 FORMATS = {
-    ".step": Format("STEP AP242, one closed solid with named faces, mm", _write_step),
+    ".step": Format("STEP AP242 (or AP214), one closed solid with named faces, mm", _write_step),
     ".stp": Format("the same as .step", _write_step),
+    ".iges": Format("IGES 5.3, one closed solid, mm", _write_iges),
+    ".igs": Format("the same as .iges", _write_iges),
+    ".brep": Format("OCCT's own BREP, one closed solid, mm", _write_brep),
     ".stl": Format("STL, binary triangles, m (or mm)", _write_stl),
     ".glb": Format("glTF binary, triangles for the web, m", _write_glb),
     ".ply": Format("PLY, binary triangles, m (or mm)", _write_ply),
@@ -156,6 +186,9 @@ FORMATS = {
     ".vtp": Format("VTK poly data, triangles for ParaView, m (or mm)", _write_vtp),
     ".png": Format("picture of the blade", _write_png),
 }
+
+
+SOLID_WRITERS = (_write_step, _write_iges, _write_brep)
 
 
 def format_of(path: Path) -> Format:
@@ -212,7 +245,7 @@ def write(products: Products, path: Path) -> None:
     """Write one file from products that may serve several."""
     writer = format_of(path).write
     target, miss = path, None
-    if writer is _write_step:
+    if writer in SOLID_WRITERS:
         solid, tolerance = products.solid, products.options.tolerance
         if products.options.sections is None and solid.deviation.maximum > tolerance:
             target = aside(path)

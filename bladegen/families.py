@@ -118,7 +118,7 @@ class Family:
     def _sections(self) -> SectionBatch:
         return SectionBatch(self.blade, self.space, self.window, self.eta)
 
-    def block(self, index: Indices, *, dtype: type = np.float64) -> Block:
+    def block(self, index: Indices, *, dtype: type = np.float64, measured: bool = False) -> Block:
         """Make the sections of some variants, drawn again where they are not sound.
 
         Parameters
@@ -127,15 +127,23 @@ class Family:
             Which variants.
         dtype : type
             Of the sections.
+        measured : bool
+            Measure areas, centroids and so on (`Batch.measures`).
         """
+        made: dict[str, Any] = {"dtype": dtype, "measured": measured}
         values = self.design.values[index]
-        batch = self._sections.evaluate(*self._split(values), dtype=dtype)
+        batch = self._sections.evaluate(*self._split(values), **made)
         reasons = self._reasons(values, batch.faults, batch.relative_thickness)
         values, attempts, reasons = self._redrawn(index, values, reasons)
         again = np.flatnonzero(attempts > 1)
         if again.size:
-            batch.take(again, self._sections.evaluate(*self._split(values[again]), dtype=dtype))
+            batch.take(again, self._sections.evaluate(*self._split(values[again]), **made))
         return Block(index, values, attempts, tuple(reasons), batch)
+
+    def named(self, block: Block, place: int) -> Blade:
+        """Return one variant of a block as a blade."""
+        row = int(np.flatnonzero(block.index == place)[0])
+        return self._blade(place, block.values[row])
 
     def variant(self, place: int) -> Blade:
         """Return one variant as a blade, whether it is sound or not."""

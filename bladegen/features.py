@@ -23,7 +23,7 @@ Single = npt.NDArray[np.float32]
 STEPS = 12  # Newton steps; four are usual
 WANDERING = 12  # landmarks a thickest place may lie from the thickest pair of landmarks
 ROUNDING = 1e-10  # chord^2; on such small triangles single precision is off by 1e-12
-SLACK = 1.5  # more other noses are taken for rivals than matter, since singles are compared
+SLACK = 1.01  # more other noses are taken for rivals than matter, since singles are compared
 
 
 @dataclass(frozen=True, eq=False)

@@ -151,6 +151,7 @@ def fitted(
     tolerance: float,
     *,
     sections: int | None = None,
+    spans: Array | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[SurfaceNet, Deviation]:
     """Fit a net to a blade, with sections added until it meets `tolerance`.
@@ -163,6 +164,8 @@ def fitted(
         Largest distance to the blade's sections [m].
     sections : int, optional
         Use exactly so many sections instead, wherever that leads.
+    spans : (k,) array, optional
+        Sections to begin with, root and tip among them, such as those of a blade that is alike.
     progress : callable
         Told what is being done.
 
@@ -172,7 +175,9 @@ def fitted(
         The net, and how far it is from the blade.  A deviation above the tolerance means
         that more sections would not help, or would be more than `MAX_SECTIONS`.
     """
-    v = blade.stations(FIRST_SECTIONS if sections is None else sections)
+    v = spans
+    if v is None:
+        v = blade.stations(FIRST_SECTIONS if sections is None else sections)
     for _ in range(REFINEMENTS):
         progress(f"fitting {len(v)} sections")
         net = fit(blade.sections(v), blade.u, v)

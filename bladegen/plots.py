@@ -10,7 +10,7 @@ from bladegen.arrays import Array
 from bladegen.errors import ExportError
 from bladegen.pga import ShapeSpace
 
-__all__ = ["draw_space", "figure", "physical", "save_figure", "shade"]
+__all__ = ["INK", "draw_space", "figure", "figure_of", "physical", "save_figure", "shade"]
 
 SUFFIXES = (".png", ".svg", ".pdf")
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe & Ito
@@ -19,12 +19,18 @@ INK = "#22303c"
 
 def figure(rows: int, columns: int, *, width: float, height: float) -> tuple[Any, Any]:
     """Return a matplotlib figure without any window, and its axes (rows, columns)."""
+    drawn = figure_of(width, height)
+    return drawn, drawn.subplots(rows, columns, squeeze=False)
+
+
+def figure_of(width: float, height: float) -> Any:
+    """Return an empty matplotlib figure without any window, its size in inches."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     drawn = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(drawn)
-    return drawn, drawn.subplots(rows, columns, squeeze=False)
+    return drawn
 
 
 def shade(fraction: float) -> Any:

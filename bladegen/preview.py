@@ -6,19 +6,19 @@ Lengths are metres, blade frame.  pyvista is imported when first needed.
 import ctypes
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bladegen.arrays import Array
+from bladegen.arrays import Array, Indices
 from bladegen.blade import Blade
 from bladegen.errors import RenderError
-from bladegen.mesh import TriangleMesh, from_blade
+from bladegen.mesh import TriangleMesh, from_blade, surface
 
-__all__ = ["picture", "require_renderer", "show", "write_vtp"]
+__all__ = ["gallery", "picture", "require_renderer", "show", "write_vtp"]
 
 SIZE = (1920, 1080)
 SECTIONS = 240
@@ -117,6 +117,45 @@ def picture(blade: Blade, path: Path, *, size: tuple[int, int] = SIZE) -> None:
     Image.fromarray(image).save(path, format="PNG", optimize=True)
 
 
+def gallery(
+    sections: Array, names: Sequence[str], *, columns: int, size: tuple[int, int]
+) -> Indices:
+    """Render blades given by their sections (b, k, n, 3) side by side, all seen alike.
+
+    Returns
+    -------
+    (height, width, 3) array
+        Red, green and blue, 0 to 255.
+
+    Raises
+    ------
+    RenderError
+        If this machine cannot render, or the picture came out blank.
+    """
+    import pyvista as pv
+
+    require_renderer()
+    rows = -(-len(sections) // columns)
+    with _quietly():
+        plotter = pv.Plotter(
+            off_screen=True, window_size=list(size), shape=(rows, columns), border=False
+        )
+        aspect = size[0] * rows / (size[1] * columns)
+        points = sections[:, :, ::10].reshape(-1, 3)
+        for place, (loops, name) in enumerate(zip(sections, names, strict=True)):
+            plotter.subplot(*divmod(place, columns))
+            _dress(plotter)
+            _add_surface(plotter, surface(loops))
+            plotter.camera_position = _seen_from(points, aspect)
+            plotter.add_text(name, position=(10, 6), font_size=8, color=INK)
+        image = plotter.screenshot(None, return_img=True)
+        plotter.close()
+    if image is None or float(np.std(image)) < BLANK:
+        raise RenderError("the gallery came out blank; " + NO_RENDERER)
+    shown: Indices = image
+    return shown
+
+
 def show(blade: Blade) -> None:
     """Open an interactive window and wait until it is closed."""
     require_renderer()
@@ -201,9 +240,13 @@ def _dress(plotter: Any) -> None:
 
 def _add_blade(plotter: Any, blade: Blade) -> None:
     """Add the surface, and the definition's stations as lines on it."""
-    surface = _poly(from_blade(blade, stations=SECTIONS))
+    _add_surface(plotter, from_blade(blade, stations=SECTIONS))
+    plotter.add_mesh(_rings(blade), color=STATION, line_width=2.5, render_lines_as_tubes=False)
+
+
+def _add_surface(plotter: Any, mesh: TriangleMesh) -> None:
     plotter.add_mesh(
-        surface,
+        _poly(mesh),
         color=SURFACE,
         smooth_shading=True,
         split_sharp_edges=True,
@@ -212,7 +255,6 @@ def _add_blade(plotter: Any, blade: Blade) -> None:
         specular_power=20,
         ambient=0.18,
     )
-    plotter.add_mesh(_rings(blade), color=STATION, line_width=2.5, render_lines_as_tubes=False)
 
 
 def _rings(blade: Blade) -> Any:
@@ -242,7 +284,11 @@ def _add_axes(plotter: Any) -> None:
 
 def _perspective(blade: Blade, aspect: float) -> list[Array]:
     """Look at the suction side from the root's end, as near as the whole blade can be seen."""
-    points = blade.sections(np.linspace(0.0, 1.0, 60))[:, ::10].reshape(-1, 3)
+    return _seen_from(blade.sections(np.linspace(0.0, 1.0, 60))[:, ::10].reshape(-1, 3), aspect)
+
+
+def _seen_from(points: Array, aspect: float) -> list[Array]:
+    """Return a camera that sees all points from the suction side and the root's end."""
     towards, up = np.array([0.8, 0.34, -0.5]), np.array([0.35, -1.0, 0.0])
     towards = towards / np.linalg.norm(towards)
     right = np.cross(up, towards)

@@ -22,7 +22,7 @@ PARAMETER_TOLERANCE = 1e-6  # of u, before the last step; a maximum is off by it
 ITERATIONS = 60  # bisection alone needs 40
 SETTLED = 1e-13  # change of a map that ends its iteration
 SAME_NOSE = 3  # landmarks; nearer peaks are one nose
-RIVAL = 1e-3  # of the squared distance; peaks at landmarks lower than this are of no concern
+RIVAL = 3e-2  # of the squared distance; lower peaks at landmarks no stretch makes the highest
 AMBIGUOUS = 2e-5  # of a chord; noses whose distances differ by less share the leading edge
 WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
 
@@ -97,14 +97,14 @@ class SectionSplines:
     def _step(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array, Mask]:
         """Return the maps of `normalising`, exact but where a section has two noses, and where."""
         curves = self.fit(points)
-        A, c = resizing(
+        A, c, passed = resizing(
             np.stack(curves._noses),
             curves.leading_edge,
             curves.trailing_edge,
             None if relative_thickness is None else curves.thickness,
             relative_thickness,
         )
-        return A, c, curves.has_rivals
+        return A, c, curves.has_rivals | passed
 
 
 def resizing(
@@ -113,7 +113,7 @@ def resizing(
     trailing_edge: Array,
     thickness: Array | None,
     relative_thickness: Array | None,
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, Mask]:
     """Return the maps of GL2 that bring measured sections to unit chord and thickness.
 
     Parameters
@@ -129,6 +129,9 @@ def resizing(
     -------
     A, c : (..., 2, 2), (..., 2) arrays
         ``points @ A + c``; leading edge and trailing-edge midpoint stay but for the scaling.
+    passed : (...) array of bool
+        Where another nose shares the leading edge of the result or is it, so that another step
+        is needed.
     """
     line = trailing_edge - leading_edge
     length = np.linalg.norm(line, axis=-1)
@@ -136,15 +139,18 @@ def resizing(
     normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
     far = noses - leading_edge
     x, y = np.sum(far * along, axis=-1), np.sum(far * normal, axis=-1)
-    stretch, chord = np.ones_like(length), np.hypot(length - x, y).max(axis=0)
+    stretch, reach = np.ones_like(length), np.hypot(length - x, y)
     if thickness is not None and relative_thickness is not None:
         for _ in range(3):  # noses beside the chord line move with the stretch
-            stretch = relative_thickness * chord / thickness
-            chord = np.hypot(length - x, stretch * y).max(axis=0)
+            stretch = relative_thickness * reach.max(axis=0) / thickness
+            reach = np.hypot(length - x, stretch * y)
+    # the farthest point stays the farthest under the stretch but where another nose passes it
+    passed = reach[0] - reach[1] < 2.0 * AMBIGUOUS * length
+    passed &= np.any(noses[0] != noses[1], axis=-1)
     lift = (stretch - 1.0)[..., None, None] * normal[..., :, None] * normal[..., None, :]
-    scale = 1.0 / chord
+    scale = 1.0 / reach.max(axis=0)
     shift = -(leading_edge[..., None, :] @ lift)[..., 0, :] * scale[..., None]
-    return scale[..., None, None] * (np.eye(2) + lift), shift
+    return scale[..., None, None] * (np.eye(2) + lift), shift, passed
 
 
 @dataclass(frozen=True, eq=False)

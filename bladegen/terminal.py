@@ -1,6 +1,7 @@
 """What the command line prints: tables, figures, progress.  rich is imported when needed."""
 
 import json
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,6 +16,7 @@ __all__ = [
     "print_summary",
     "print_table",
     "progress_bar",
+    "variants_bar",
 ]
 
 
@@ -30,6 +32,43 @@ def progress_bar() -> Iterator[Any]:
     with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
         task = bar.add_task("starting", total=None)
         yield lambda message: bar.update(task, description=message)
+
+
+@contextmanager
+def variants_bar(count: int) -> Iterator[Any]:
+    """Show how many of `count` variants are whole, the rate, and the time that remains."""
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    quiet = not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
+        task = bar.add_task("variants", total=count, rate="")
+        start, first = time.monotonic(), -1
+
+        def told(done: int) -> None:
+            nonlocal first
+            first = done if first < 0 else first
+            spent = time.monotonic() - start
+            rate = f"{(done - first) / spent:.1f}/s" if done > first else ""
+            bar.update(task, completed=done, rate=rate)
+
+        yield told
 
 
 def print_summary(folder: Path, name: str) -> None:

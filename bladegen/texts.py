@@ -2,14 +2,19 @@
 
 import re
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
 from bladegen.deformation import Coordinates, Window
-from bladegen.errors import BladegenError
+from bladegen.designs import Design, tabulated
+from bladegen.errors import BladegenError, DesignError, FileError
+from bladegen.pga import ShapeSpace
 
-__all__ = ["coordinates", "metres", "span_window"]
+__all__ = ["coordinates", "factor_bounds", "factor_table", "metres", "span_window"]
 
+MANIFEST = ("index", "name", "valid", "reason", "attempts", "seed", "volume_m3", "surface_m2")
+FILES = ("_file", "_sha256", "_problem")
 _METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0}
 _LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(um|mm|cm|m)\s*")
 
@@ -32,6 +37,64 @@ def metres(text: str, field: str) -> float:
             "such as 0.3mm"
         )
     return float(f"{float(match[1]) * _METRES[match[2]]:.15g}")
+
+
+def factor_bounds(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
+    """Return bounds of factors from texts like ``thickness=0.9:1.1``; twist is in degrees.
+
+    Raises
+    ------
+    BladegenError
+        If a text is not of that form.
+
+    >>> factor_bounds(["thickness=0.9:1.1"])
+    {'thickness': (0.9, 1.1)}
+    """
+    bounds = {}
+    for text in texts:
+        name, _, limits = text.partition("=")
+        values = _numbers(limits.replace(":", ","), "vary") if limits.count(":") == 1 else []
+        if len(values) != 2:
+            raise BladegenError(
+                f"vary: got {text!r}, must be NAME=LOW:HIGH, such as thickness=0.9:1.1"
+            )
+        low, high = np.radians(values) if name == "twist" else values
+        bounds[name.strip()] = (float(low), float(high))
+    return bounds
+
+
+def factor_table(space: ShapeSpace | None, path: Path) -> Design:
+    """Read a design from a CSV or Parquet file: a row a variant, a column a factor.
+
+    Twist is in degrees, in the column twist_deg.  Columns that a manifest has beside its
+    factors are passed over, so that a manifest is a table too.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, or holds what no design can be.
+    """
+    import pyarrow as pa
+    from pyarrow import csv, parquet
+
+    try:
+        parquet_file = path.suffix.lower() == ".parquet"
+        table = parquet.read_table(path) if parquet_file else csv.read_csv(path)
+        columns = {
+            name: np.asarray(values.to_numpy(), dtype=np.float64)
+            for name, values in zip(table.column_names, table.columns, strict=True)
+            if not (name.startswith("section") or name in MANIFEST or name.endswith(FILES))
+        }
+        if "twist_deg" in columns:
+            columns["twist"] = np.radians(columns.pop("twist_deg"))
+        return tabulated(space, columns)
+    except OSError as error:
+        raise FileError(str(path), [f"cannot be read: {error.strerror or error}"]) from None
+    except (pa.ArrowException, ValueError, TypeError) as error:
+        first = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise FileError(str(path), [f"not a table of numbers: {first}"]) from None
+    except DesignError as error:
+        raise FileError(str(path), [str(error)]) from None
 
 
 def coordinates(texts: Sequence[str]) -> Coordinates | None:

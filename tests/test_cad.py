@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from bladegen import cad, properties
+from bladegen import cad, cad_files, properties
 from bladegen.blade import Blade
 from bladegen.checks import solid_figures
 from bladegen.definition import Distribution
@@ -28,7 +28,7 @@ def solid(blade):
 @pytest.fixture(scope="module")
 def step(solid, tmp_path_factory):
     path = tmp_path_factory.mktemp("step") / "blade.step"
-    cad.write_step(solid, path)
+    cad_files.write_step(solid, path)
     return path
 
 
@@ -38,7 +38,7 @@ def names_in(text):
 
 
 def test_the_file_is_one_valid_closed_solid_with_the_same_volume(solid, step):
-    figures = solid_figures(cad.read_step(step), quick=True)
+    figures = solid_figures(cad_files.read_step(step), quick=True)
     assert figures["one_solid"]
     assert figures["valid"]
     assert figures["closed"]
@@ -69,7 +69,7 @@ def test_occt_finds_points_of_the_blade_on_the_file_s_surface(blade, step):
     from OCP.TopAbs import TopAbs_SHELL
     from OCP.TopExp import TopExp_Explorer
 
-    shell = TopExp_Explorer(cad.read_step(step), TopAbs_SHELL).Current()
+    shell = TopExp_Explorer(cad_files.read_step(step), TopAbs_SHELL).Current()
     rng = np.random.default_rng(3)
     half = np.sort(rng.uniform(0, 0.5, 3))
     u = np.concatenate([half, 1 - half[::-1]])
@@ -140,17 +140,29 @@ def test_swept_blades_make_solids_too(tmp_path):
     )
     solid = cad.solid(Blade.from_definition(swept, landmarks=201))
     assert solid.deviation.maximum < 0.3e-3
-    cad.write_step(solid, tmp_path / "swept.step")
-    assert solid_figures(cad.read_step(tmp_path / "swept.step"), quick=True)["valid"]
+    cad_files.write_step(solid, tmp_path / "swept.step")
+    assert solid_figures(cad_files.read_step(tmp_path / "swept.step"), quick=True)["valid"]
 
 
 def test_files_that_are_no_step_are_refused(tmp_path):
     bad = tmp_path / "bad.step"
     bad.write_text("solid nonsense")
     with pytest.raises(CadError, match="not a STEP file"):
-        cad.read_step(bad)
+        cad_files.read_step(bad)
 
 
 def test_a_folder_that_is_not_there_is_an_error(solid, tmp_path):
     with pytest.raises(CadError, match="could not write"):
-        cad.write_step(solid, tmp_path / "nowhere" / "blade.step")
+        cad_files.write_step(solid, tmp_path / "nowhere" / "blade.step")
+
+
+def test_the_same_solid_with_the_same_time_makes_the_same_file(tmp_path, monkeypatch):
+    blade = Blade.from_definition(read("dtu10mw"), landmarks=101)
+    solid = cad.solid(blade, sections=40)
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    for name in ("one.step", "two.step"):
+        cad_files.write_step(solid, tmp_path / name)
+    one, two = ((tmp_path / name).read_text() for name in ("one.step", "two.step"))
+    assert one == two
+    assert "'1970-01-02T00:00:00'" in one
+    assert "PRODUCT('dtu10mw','dtu10mw'" in one

@@ -226,3 +226,11 @@ def test_wrong_coordinates_over_span_are_refused(grid, values):
 def test_identity_parameters_are_not_reported():
     assert AffineChange().changed() == {}
     assert AffineChange(thickness=1.1).changed() == {"thickness": 1.1}
+
+
+def test_a_lower_nose_that_a_stretch_makes_the_farthest_is_seen():
+    blade = bg.Blade.from_definition(bg.read("dtu10mw"))
+    t = [-0.0625985557, -0.0989607698, 0.0078348874, -0.0640664086]
+    eta = np.linspace(0.19, 0.4, 43)
+    variant = blade.untested(SPACE, t, AffineChange())
+    assert_allclose(variant.splines.fit(variant.profiles(eta)).chord, 1.0, atol=1e-9)

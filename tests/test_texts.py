@@ -1,8 +1,14 @@
+import numpy as np
+import pyarrow as pa
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from pyarrow import csv, parquet
 
+from bladegen import texts
 from bladegen.errors import BladegenError
+from bladegen.pga import ShapeSpace
 from bladegen.texts import coordinates, metres, span_window
 
 
@@ -47,3 +53,49 @@ def test_wrong_coordinates_are_refused(texts, message):
 def test_wrong_windows_are_refused(text):
     with pytest.raises(BladegenError, match="window"):
         span_window(text)
+
+
+def test_bounds_are_read_twist_in_degrees():
+    bounds = texts.factor_bounds(["thickness=0.9:1.1", "twist=-2:2"])
+    assert bounds["thickness"] == (0.9, 1.1)
+    assert_allclose(bounds["twist"], np.radians([-2, 2]))
+
+
+@pytest.mark.parametrize("text", ["thickness", "thickness=1", "thickness=1:2:3", "t=a:b", "=", ""])
+def test_bounds_of_another_form_are_refused(text):
+    with pytest.raises(BladegenError):
+        texts.factor_bounds([text])
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_tables_are_read(tmp_path, suffix):
+    path = tmp_path / f"plan{suffix}"
+    columns = {"t1": [0.1, -0.2], "twist_deg": [1.0, 2.0], "name": ["a", "b"]}
+    table = pa.table(columns)
+    csv.write_csv(table, path) if suffix == ".csv" else parquet.write_table(table, path)
+    design = texts.factor_table(ShapeSpace.bundled(), path)
+    assert design.what.names == ("t1", "twist")
+    assert_allclose(design.values, [[0.1, np.radians(1)], [-0.2, np.radians(2)]])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t1,height\n1,2\n", "got 'height'"),
+        ("t1\nx\n", "not a table of numbers"),
+        ("t1\n1\n,\n", "not a table|must be a number"),
+        ("", "not a table of numbers"),
+        ("chord\n99\n", "row 1, chord"),
+    ],
+)
+def test_tables_that_are_none_say_why(tmp_path, text, said):
+    path = tmp_path / "plan.csv"
+    path.write_text(text)
+    with pytest.raises(BladegenError, match=said) as caught:
+        texts.factor_table(ShapeSpace.bundled(), path)
+    assert "plan.csv" in str(caught.value)
+
+
+def test_a_table_that_is_not_there_says_so(tmp_path):
+    with pytest.raises(BladegenError, match="cannot be read"):
+        texts.factor_table(None, tmp_path / "none.csv")

@@ -1,0 +1,181 @@
+"""The command `bladegen family`: parse, call, print."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen.cli_options import (
+    BladeName,
+    EdgeOption,
+    Formats,
+    PathKind,
+    PathOption,
+    Planes,
+    PlanesOption,
+    Stations,
+    TipKind,
+    TipOption,
+    Tolerance,
+    Unit,
+    UnitOption,
+    build_options,
+    read_blade,
+)
+from bladegen.errors import FamilyError
+from bladegen.terminal import print_table, variants_bar
+
+__all__ = ["family"]
+
+
+def family(
+    blade: BladeName,
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the family.")],
+    count: Annotated[int | None, typer.Option(help="How many variants; 100 if not given.")] = None,
+    seed: Annotated[int, typer.Option(help="Of the draws; the same seed, the same family.")] = 0,
+    design: Annotated[
+        str, typer.Option(help="ellipsoid sobol lhs box normal sweep.")
+    ] = "ellipsoid",
+    table: Annotated[
+        Path | None,
+        typer.Option(help="CSV or Parquet: a row a variant, columns t1.., thickness, twist_deg.."),
+    ] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=LOW:HIGH",
+            help="Vary t1.., thickness, camber, chord, twist [deg], chord_scale, twist_scale, "
+            "prebend_scale; may be repeated.",
+        ),
+    ] = None,
+    reach: Annotated[float, typer.Option(help="Share of the space's bounds that is used.")] = 1.0,
+    space: Annotated[
+        str | None, typer.Option(help="A space's file, or 'none'; the bundled one if not given.")
+    ] = None,
+    window: Annotated[
+        str | None,
+        typer.Option(metavar="FROM,TO", help="Where changes fade in; past round roots by default."),
+    ] = None,
+    spans: Annotated[int, typer.Option(help="Sections a variant.")] = 100,
+    invalid: Annotated[
+        str, typer.Option(help="'redraw' variants that are not sound, or 'keep' and mark them.")
+    ] = "redraw",
+    tries: Annotated[int, typer.Option(help="Draws of one variant at most.")] = 100,
+    double: Annotated[
+        bool, typer.Option("--double", help="Store sections as float64, not float32.")
+    ] = False,
+    formats: Formats = None,
+    stations: Stations = 300,
+    tolerance: Tolerance = "0.3mm",
+    tip: TipOption = TipKind.flat,
+    unit: UnitOption = Unit.m,
+    path: PathOption = PathKind.geodesic,
+    planes: PlanesOption = Planes.axis,
+    trailing_edge: EdgeOption = "2mm",
+    jobs: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
+    dask: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead of --jobs.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with what an earlier run left.")
+    ] = False,
+) -> None:
+    """Make a family of perturbed blades: sections, a manifest, files and a contact sheet."""
+    from bladegen.families import family as plan
+    from bladegen.family_run import Order, run
+    from bladegen.pga import ShapeSpace
+    from bladegen.texts import factor_bounds, factor_table, span_window
+
+    known = None
+    if space != "none":
+        known = ShapeSpace.bundled() if space is None else ShapeSpace.load(space)
+    if table is not None and (count is not None or vary):
+        raise FamilyError("table: it says what varies and how often; leave --count and --vary out")
+    landmarks = 401 if known is None else len(known.u)
+    planned = plan(
+        read_blade(blade, landmarks, path, planes, trailing_edge),
+        known,
+        count=100 if count is None else count,
+        seed=seed,
+        design=design if table is None else factor_table(known, table),
+        bounds=factor_bounds(vary or []),
+        reach=reach,
+        window=None if window is None else span_window(window),
+        spans=spans,
+        invalid=invalid,
+        tries=tries,
+    )
+    order = Order(
+        planned,
+        output,
+        tuple(formats or ()),
+        "float64" if double else "float32",
+        build_options(tolerance, stations, tip, unit),
+    )
+    try:
+        with _cluster(dask) as client, variants_bar(len(planned)) as progress:
+            made = run(order, jobs=jobs, client=client, resume=resume, progress=progress)
+    except KeyboardInterrupt:
+        raise FamilyError(
+            f"{output}: interrupted; the same command with --resume goes on"
+        ) from None
+    _summary(order, made)
+
+
+@contextmanager
+def _cluster(address: str | None) -> Iterator[Any]:
+    """Connect to a Dask scheduler; None without an address."""
+    if address is None:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError:
+        raise FamilyError(
+            "dask: distributed is not installed; pip install 'bladegen[dask]' adds it"
+        ) from None
+    try:
+        client = Client(address, timeout="10s")
+    except (OSError, ValueError) as error:
+        raise FamilyError(f"dask: {address}: no scheduler answers ({error})") from None
+    with client:
+        yield client
+
+
+def _summary(order: Any, made: int) -> None:
+    """Draw the contact sheet and say what the folder holds."""
+    from bladegen.contact import contact_sheet
+    from bladegen.family_files import read_manifest
+
+    manifest = read_manifest(order.place, ("name", "valid", "attempts", "volume_m3", "reason"))
+    sheet = order.target / "contact.png"
+    family = order.family
+    remark = contact_sheet(
+        order.place.sections, manifest["name"], manifest["valid"], family.blade, family.eta, sheet
+    )
+    valid = manifest["valid"]
+    volume = manifest["volume_m3"][valid]
+    size = sum(file.stat().st_size for file in order.target.rglob("*") if file.is_file())
+    rows = [
+        ["variants", f"{len(valid)}, {made} of them made now"],
+        ["sound", f"{int(valid.sum())} of {len(valid)}"],
+        ["draws", f"{int(manifest['attempts'].sum())}"],
+        ["volume", f"{volume.min():.1f} to {volume.max():.1f} m3" if len(volume) else "none"],
+        ["sections", f"{len(family.eta)} of {len(family.blade.u)} landmarks, {order.dtype}"],
+        ["size", f"{size / 1e6:.1f} MB"],
+        ["overlay", remark],
+    ]
+    print_table(["figure", "value"], rows, title=f"family of {family.blade.name}")
+    files = [
+        [str(order.place.manifest), "a row a variant: factors, validity, properties over span"],
+        [str(order.place.store), "sections [m]"],
+        [str(sheet), "the family at a glance"],
+    ]
+    if order.suffixes:
+        files.insert(2, [str(order.place.blades), f"files: {' '.join(order.suffixes)}"])
+    print_table(["file", "holds"], files)
+    wrong = [reason for reason in manifest["reason"] if reason]
+    if wrong:
+        typer.echo(f"note: {len(wrong)} variants are not sound, such as: {wrong[0]}")

@@ -1,0 +1,117 @@
+"""What commands have in common: their options, and what they make of them."""
+
+from enum import StrEnum
+from typing import Annotated, Any
+
+import typer
+
+__all__ = [
+    "BladeName",
+    "EdgeOption",
+    "Formats",
+    "Json",
+    "Landmarks",
+    "PathKind",
+    "PathOption",
+    "Planes",
+    "PlanesOption",
+    "Stations",
+    "TipKind",
+    "TipOption",
+    "Tolerance",
+    "Unit",
+    "UnitOption",
+    "build_options",
+    "read_blade",
+]
+
+
+class PathKind(StrEnum):
+    """How stations are joined."""
+
+    geodesic = "geodesic"
+    spline = "spline"
+
+
+class TipKind(StrEnum):
+    """How the tip is closed."""
+
+    flat = "flat"
+    round = "round"
+
+
+class Unit(StrEnum):
+    """Units of mesh files."""
+
+    m = "m"
+    mm = "mm"
+
+
+class Planes(StrEnum):
+    """Which way section planes face."""
+
+    axis = "axis"
+    z = "z"
+
+
+BladeName = Annotated[
+    str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a windIO file.")
+]
+Formats = Annotated[
+    list[str] | None,
+    typer.Option("--format", help="step iges brep stl glb png ply obj 3mf vtp; may be repeated."),
+]
+Tolerance = Annotated[
+    str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
+]
+Stations = Annotated[int, typer.Option(help="Sections of the meshes.")]
+TipOption = Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")]
+UnitOption = Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ and VTP files.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
+PathOption = Annotated[
+    PathKind, typer.Option("--path", help="Join stations by geodesics or by a smooth spline.")
+]
+PlanesOption = Annotated[
+    Planes, typer.Option("--planes", help="Section planes normal to the reference axis or to z.")
+]
+EdgeOption = Annotated[
+    str,
+    typer.Option(
+        "--trailing-edge",
+        metavar="LENGTH|given|sharp",
+        help="Least thickness of the trailing edge, such as 2mm; or as given; or sharp.",
+    ),
+]
+
+
+def read_blade(source: str, landmarks: int, path: str, planes: Planes, edge: str) -> Any:
+    """Read and build a blade as the options say."""
+    from bladegen.blade import Blade
+    from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
+    from bladegen.planform import normal_to_axis, normal_to_z
+    from bladegen.readers import read
+    from bladegen.texts import metres
+
+    named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
+    return Blade.from_definition(
+        read(source),
+        landmarks=landmarks,
+        path=path,
+        planes={"axis": normal_to_axis, "z": normal_to_z}[planes],
+        trailing_edge=named.get(edge) or MinimumThickness(metres(edge, "trailing-edge")),
+    )
+
+
+def build_options(tolerance: str, stations: int, tip: TipKind, unit: Unit) -> Any:
+    """Return how products are made, as the options say."""
+    from bladegen import cad
+    from bladegen.exporters import Options
+    from bladegen.texts import metres
+
+    return Options(
+        tolerance=metres(tolerance, "tolerance"),
+        stations=stations,
+        tip={"flat": cad.flat_tip, "round": cad.round_tip}[tip],
+        unit=unit,
+    )

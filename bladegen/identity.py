@@ -1,0 +1,109 @@
+"""What a family is, as text: two families with the same identity hold the same blades.
+
+An identity is a flat table of what a run was asked for and of fingerprints of what it was given;
+it stands in `family.json` and is compared before a run goes on.
+"""
+
+import hashlib
+import json
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from bladegen import __version__
+from bladegen.blade import Blade
+from bladegen.families import Family
+from bladegen.pga import ShapeSpace
+
+__all__ = ["fingerprint", "identity"]
+
+
+def fingerprint(value: Any) -> str:
+    """Return the first 16 hex digits of a SHA-256 over a value's numbers and names.
+
+    Dataclasses count by their fields, arrays by their bytes, functions by their names.
+    """
+    digest = hashlib.sha256()
+    _feed(digest, value)
+    return digest.hexdigest()[:16]
+
+
+def _feed(digest: Any, value: Any) -> None:
+    if is_dataclass(value) and not isinstance(value, type):
+        digest.update(type(value).__name__.encode())
+        for entry in fields(value):
+            if entry.name not in ("source", "findings", "description", "about"):
+                digest.update(entry.name.encode())
+                _feed(digest, getattr(value, entry.name))
+    elif isinstance(value, np.ndarray):
+        digest.update(f"{value.dtype.str}{value.shape}".encode())
+        digest.update(np.ascontiguousarray(value).tobytes())
+    elif isinstance(value, dict):
+        for key in sorted(value):
+            digest.update(str(key).encode())
+            _feed(digest, value[key])
+    elif isinstance(value, list | tuple):
+        digest.update(f"[{len(value)}]".encode())
+        for item in value:
+            _feed(digest, item)
+    elif callable(value):
+        digest.update(getattr(value, "__qualname__", type(value).__name__).encode())
+    else:
+        digest.update(repr(value).encode())
+
+
+def identity(family: Family) -> dict[str, Any]:
+    """Return what a family is: JSON values only."""
+    blade, design = family.blade, family.design
+    return {
+        "bladegen": __version__,
+        "blade": blade.name,
+        "blade_fingerprint": _blade(blade),
+        "space_fingerprint": None if family.space is None else _space(family.space),
+        "landmarks": len(blade.u),
+        "design": design.kind,
+        "seed": design.seed,
+        "count": len(design),
+        "factors": {
+            name: [float(low), float(high)]
+            for name, low, high in zip(
+                design.what.names, design.what.low, design.what.high, strict=True
+            )
+        },
+        "design_fingerprint": fingerprint(design.values),
+        "window": [family.window.start, family.window.end],
+        "spans": len(family.eta),
+        "invalid": family.invalid,
+        "tries": family.tries,
+        "thinnest": family.thinnest,
+    }
+
+
+def _space(space: ShapeSpace) -> str:
+    return fingerprint([space.u, space.mean, space.modes, space.coordinates])
+
+
+def _blade(blade: Blade) -> str:
+    """Fingerprint what a blade is made from: its definition, not what follows from it."""
+    deformations = [[_space(one.space), one.t, one.window] for one in blade.deformations]
+    return fingerprint(
+        [
+            blade.definition,
+            blade.u,
+            blade.path,
+            blade.planes,
+            blade.trailing_edge,
+            deformations,
+            blade.thickenings,
+        ]
+    )
+
+
+def differences(wanted: dict[str, Any], found: dict[str, Any]) -> list[str]:
+    """Say in what two identities differ."""
+    return [
+        f"{key}: {json.dumps(found.get(key))} there, {json.dumps(wanted.get(key))} asked for"
+        for key in wanted | found
+        if wanted.get(key) != found.get(key)
+    ]

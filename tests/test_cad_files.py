@@ -1,0 +1,78 @@
+import gmsh
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from bladegen import cad, cad_files, checks, mesh
+from bladegen.blade import Blade
+from bladegen.errors import CadError
+from bladegen.readers import read
+
+
+@pytest.fixture(scope="module")
+def solid():
+    return cad.solid(Blade.from_definition(read("dtu10mw"), landmarks=101), sections=60)
+
+
+WRITERS = {
+    ".step": cad_files.write_step,
+    ".iges": cad_files.write_iges,
+    ".brep": cad_files.write_brep,
+}
+BOTH = pytest.mark.parametrize("suffix", WRITERS)
+
+
+@BOTH
+def test_solids_are_read_again_whole(solid, tmp_path, suffix):
+    path = tmp_path / f"blade{suffix}"
+    WRITERS[suffix](solid, path)
+    shape = cad_files.read(path)
+    figures = checks.solid_figures(shape, quick=True)
+    assert figures["valid"]
+    assert figures["closed"]
+    assert figures["one_solid"]
+    again = cad.volume(shape, cad.COARSE_VOLUME)
+    assert_allclose(again, cad.volume(solid.shape, cad.COARSE_VOLUME), rtol=1e-6)
+
+
+@BOTH
+def test_gmsh_reads_them_as_one_volume_in_millimetres(solid, tmp_path, suffix):
+    path = tmp_path / f"blade{suffix}"
+    WRITERS[suffix](solid, path)
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.occ.importShapes(str(path))
+        gmsh.model.occ.synchronize()
+        volumes = gmsh.model.getEntities(3)
+        assert len(volumes) == 1
+        box = gmsh.model.getBoundingBox(*volumes[0])
+    finally:
+        gmsh.finalize()
+    assert_allclose(box[5], 1000 * solid.net.poles[..., 2].max(), rtol=1e-3)
+
+
+def test_the_schema_is_what_was_asked_for(solid, tmp_path):
+    for schema, name in (("ap242", "AP242_MANAGED_MODEL"), ("ap214", "AUTOMOTIVE_DESIGN")):
+        path = tmp_path / f"{schema}.step"
+        cad_files.write_step(solid, path, schema=schema)
+        assert name in path.read_text()[:2000]
+        assert checks.solid_figures(cad_files.read(path), quick=True)["valid"]
+
+
+def test_triangles_of_a_shape_lie_on_it(solid):
+    triangles = cad_files.triangulated(solid.shape, 0.002)
+    welded = mesh.to_trimesh(triangles)
+    welded.merge_vertices()
+    assert_allclose(welded.volume, solid.net.volume(), rtol=1e-3)
+    low, high = triangles.vertices.min(axis=0), triangles.vertices.max(axis=0)
+    assert_allclose(high[2], solid.net.poles[..., 2].max(), atol=1e-4)
+    assert np.all(low < high)
+
+
+@BOTH
+def test_other_files_are_refused(tmp_path, suffix):
+    path = tmp_path / f"no{suffix}"
+    path.write_text("nothing of the kind\n")
+    with pytest.raises(CadError, match="OCCT can read"):
+        cad_files.read(path)

@@ -1,0 +1,102 @@
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from bladegen import cli, contact, preview
+from bladegen.errors import BladegenError, RenderError
+from bladegen.family_files import FamilyFolder, read_manifest
+
+FEW = ("--spans", "16", "--count", "5", "--seed", "3")
+
+
+def run(*arguments):
+    return CliRunner().invoke(cli.app, ["family", "dtu10mw", *map(str, arguments)])
+
+
+def test_a_family_is_made_and_shown(tmp_path):
+    from PIL import Image
+
+    target = tmp_path / "family"
+    result = run("-o", target, *FEW, "--vary", "twist=-2:2", "--design", "sobol", "--double")
+    assert result.exit_code == 0, result.output
+    assert "5 of 5" in result.output
+    manifest = read_manifest(FamilyFolder(target), ("name", "twist_deg", "valid"))
+    assert manifest["name"][0] == "dtu10mw-00000"
+    assert np.abs(manifest["twist_deg"]).max() <= 2.0
+    assert FamilyFolder(target).sections.dtype == np.float64
+    picture = np.asarray(Image.open(target / "contact.png").convert("L"), dtype=float)
+    assert picture.std() > 10
+    again = run("-o", target, *FEW, "--vary", "twist=-2:2", "--design", "sobol", "--double")
+    assert isinstance(again.exception, BladegenError)
+    assert "--resume" in str(again.exception)
+
+
+def test_a_manifest_is_a_table_of_the_next_family(tmp_path):
+    assert run("-o", tmp_path / "one", *FEW, "--reach", "0.5").exit_code == 0
+    manifest = tmp_path / "one" / "manifest.parquet"
+    assert run("-o", tmp_path / "two", "--table", manifest, "--spans", "16").exit_code == 0
+    one, two = (
+        read_manifest(FamilyFolder(tmp_path / name), ("t1", "t4", "sections_sha256"))
+        for name in ("one", "two")
+    )
+    assert one["sections_sha256"] == two["sections_sha256"]
+
+
+def test_affine_parameters_alone_may_vary_on_any_number_of_landmarks(tmp_path):
+    result = run("-o", tmp_path / "f", *FEW, "--space", "none", "--vary", "chord=0.9:1.1")
+    assert result.exit_code == 0, result.output
+
+
+def test_variants_that_are_not_sound_are_told_of(tmp_path):
+    bad = ("--vary", "t1=5:6", "--invalid", "keep")
+    result = run("-o", tmp_path / "f", *FEW, *bad)
+    assert result.exit_code == 0, result.output
+    assert "0 of 5" in result.output
+    assert "note: 5 variants are not sound" in result.output
+
+
+def test_without_a_renderer_the_sheet_has_no_pictures(tmp_path, monkeypatch):
+    def nothing(*_, **__):
+        raise RenderError("nothing to render with")
+
+    monkeypatch.setattr(preview, "gallery", nothing)
+    result = run("-o", tmp_path / "f", *FEW)
+    assert result.exit_code == 0, result.output
+    assert "without pictures" in result.output
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (("--design", "grid"), "design: got 'grid'"),
+        (("--vary", "height=1:2"), "factor 'height'"),
+        (("--jobs", "0"), "jobs: got 0"),
+        (("--format", "doc"), "suffix"),
+        (("--table", "none.csv"), "leave --count"),
+        (("--space", "none"), "nothing varies"),
+        (("--dask", "tcp://127.0.0.1:9"), "no scheduler answers"),
+    ],
+)
+def test_what_cannot_be_is_said_in_one_line(tmp_path, monkeypatch, more, said):
+    if "--dask" in more:
+        import distributed
+
+        def refused(*_, **__):
+            raise OSError("Timed out")
+
+        monkeypatch.setattr(distributed, "Client", refused)
+    result = run("-o", tmp_path / "f", *FEW, *more)
+    assert isinstance(result.exception, BladegenError)
+    assert said in str(result.exception)
+
+
+def test_a_missing_dask_says_how_to_get_it(tmp_path, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "distributed", None)
+    result = run("-o", tmp_path / "f", *FEW, "--dask", "tcp://127.0.0.1:9")
+    assert "pip install 'bladegen[dask]'" in str(result.exception)
+
+
+def test_many_variants_are_thinned_in_the_overlay(monkeypatch, tmp_path):
+    monkeypatch.setattr(contact, "MOST", 2)
+    result = run("-o", tmp_path / "f", *FEW)
+    assert "2 of 5 sound variants overlaid" in result.output

@@ -1,0 +1,289 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from functools import cache
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+import zarr
+from numpy.testing import assert_allclose, assert_array_equal
+
+import bladegen as bg
+from bladegen import cad, cad_files, checks, mesh
+from bladegen.errors import BladegenError
+from bladegen.families import BLOCK
+from bladegen.family_files import FamilyFolder, digest_of, sections_digest
+from bladegen.family_run import Order, run
+from bladegen.properties import volume
+
+SPANS = 16
+COUNT = 3 * BLOCK + 9
+
+
+@cache
+def planned(count=COUNT, seed=7, **options):
+    blade = bg.Blade.from_definition(bg.read("dtu10mw"))
+    return bg.family(blade, bg.ShapeSpace.bundled(), count=count, seed=seed, spans=SPANS, **options)
+
+
+def whole(folder):
+    """What must be the same of two runs: the manifest's bytes, and the sections."""
+    return (folder / "manifest.parquet").read_bytes(), np.asarray(sections(folder))
+
+
+def sections(folder):
+    return zarr.open_group(folder / "sections.zarr", mode="r")["sections"]
+
+
+def same(one, two):
+    assert one[0] == two[0]
+    assert_array_equal(one[1], two[1])
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory):
+    """A family made by one process without any interruption."""
+    target = tmp_path_factory.mktemp("family") / "whole"
+    told = []
+    assert run(Order(planned(), target), progress=told.append) == COUNT
+    assert told == [0, 64, 128, 192, COUNT]
+    return target
+
+
+def test_the_manifest_says_what_the_variants_are(reference):
+    table = pq.read_table(reference / "manifest.parquet").to_pydict()
+    assert table["index"] == list(range(COUNT))
+    assert table["name"][10] == "dtu10mw-00010"
+    assert all(table["valid"])
+    stored = sections(reference)
+    assert stored.shape == (COUNT, SPANS, 401, 3)
+    assert stored.dtype == np.float32
+    family = planned()
+    for place in (0, 77, COUNT - 1):
+        variant = family.variant(place)
+        assert_allclose(stored[place], variant.sections(family.eta), rtol=0, atol=1e-5)
+        assert table["sections_sha256"][place] == sections_digest(stored[place])
+        t = variant.changes[-1]["pga"][0]
+        assert_allclose([table[f"t{j + 1}"][place] for j in range(4)], t, rtol=0, atol=1e-15)
+        assert_allclose(table["volume_m3"][place], volume(variant), rtol=0.02)  # few sections
+        assert_allclose(table["section_chord_m"][place], variant.chord(family.eta))
+        assert_allclose(table["section_twist_deg"][place], np.degrees(variant.twist(family.eta)))
+
+
+def test_sections_say_where_they_are(reference):
+    group = zarr.open_group(reference / "sections.zarr", mode="r")
+    assert_array_equal(group["eta"], planned().eta)
+    assert_array_equal(group["u"], planned().blade.u)
+    assert group.attrs["unit"] == "m"
+    assert not (reference / "parts").exists()
+
+
+def test_properties_are_those_of_the_sections(reference):
+    table = pq.read_table(reference / "manifest.parquet").to_pydict()
+    family = planned()
+    variant = family.variant(5)
+    finished = variant.trailing_edge(variant.profiles(family.eta), variant.chord(family.eta))
+    from bladegen import polygons
+
+    wanted = polygons.measure(finished * variant.chord(family.eta)[:, None, None])
+    assert_allclose(table["section_area_m2"][5], wanted[:, 0], rtol=1e-6)
+    assert_allclose(table["section_inertia_xx_m4"][5], wanted[:, 3], rtol=1e-6)
+    assert_allclose(table["section_perimeter_m"][5], wanted[:, 6], rtol=1e-6)
+
+
+def test_processes_make_the_same_family(reference, tmp_path):
+    assert run(Order(planned(), tmp_path / "jobs"), jobs=2) == COUNT
+    same(whole(tmp_path / "jobs"), whole(reference))
+
+
+def test_a_killed_worker_of_a_cluster_changes_nothing(reference, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        pids = list(client.run(os.getpid).values())
+        killed = []
+
+        def kill(done):
+            if done and not killed:
+                os.kill(pids[0], signal.SIGKILL)
+                killed.append(done)
+
+        run(Order(planned(), tmp_path / "dask"), client=client, progress=kill)
+    assert killed
+    same(whole(tmp_path / "dask"), whole(reference))
+
+
+def test_a_killed_process_is_replaced(reference, tmp_path):
+    target = tmp_path / "pool"
+    killed = []
+
+    def kill(done):
+        if done and not killed:
+            import multiprocessing
+
+            child = multiprocessing.active_children()[0]
+            os.kill(child.pid, signal.SIGKILL)
+            killed.append(done)
+
+    run(Order(planned(), target), jobs=2, progress=kill)
+    assert killed
+    same(whole(target), whole(reference))
+
+
+COMMAND = [sys.executable, "-c", "from bladegen.cli import main; main()", "family", "dtu10mw"]
+ASKED = ["--count", str(COUNT), "--seed", "7", "--spans", str(SPANS)]
+
+
+def start(target, *more, **kwargs):
+    return subprocess.Popen(
+        [*COMMAND, "-o", str(target), *ASKED, *more],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        **kwargs,
+    )
+
+
+@pytest.mark.parametrize(("jobs", "how"), [("1", signal.SIGKILL), ("2", signal.SIGINT)])
+def test_runs_killed_at_any_point_go_on(reference, tmp_path, jobs, how):
+    target = tmp_path / "killed"
+    rng = np.random.default_rng([int(jobs), 5])
+    for _ in range(3):
+        more = ["--resume"] if (target / "family.json").exists() else []
+        process = start(target, "--jobs", jobs, *more, start_new_session=True)
+        deadline = time.monotonic() + 60
+        already = len(list(target.glob("parts/*.parquet")))
+        while process.poll() is None and time.monotonic() < deadline:
+            if len(list(target.glob("parts/*.parquet"))) > already:
+                break
+            time.sleep(0.01)
+        time.sleep(rng.uniform(0.0, 0.15))
+        if process.poll() is None:
+            os.killpg(process.pid, how)
+        _, err = process.communicate(timeout=60)
+        if how == signal.SIGINT and process.returncode == 1:
+            assert err.strip().endswith("interrupted; the same command with --resume goes on")
+            assert len(err.strip().splitlines()) == 1
+        if (target / "manifest.parquet").exists():
+            break
+    done = start(target, "--jobs", jobs, "--resume")
+    out, err = done.communicate(timeout=120)
+    assert done.returncode == 0, err
+    assert f"{COUNT}," in out
+    same(whole(target), whole(reference))
+    assert not list(target.glob("sections.zarr/**/*.partial"))
+    again = start(target, "--resume")
+    out, err = again.communicate(timeout=120)
+    assert again.returncode == 0, err
+    assert "0 of them made now" in out
+
+
+def test_a_full_disk_is_one_line_and_the_run_goes_on(reference, tmp_path):
+    import resource
+
+    target = tmp_path / "full"
+    limit = 4 * SPANS * 401 * 3 * 40  # less than the sections of a block
+
+    def small():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+    process = start(target, preexec_fn=small)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "cannot be written" in err
+    assert len(err.strip().splitlines()) == 1
+    assert not (target / "manifest.parquet").exists()
+    assert run(Order(planned(), target), resume=True) == COUNT
+    same(whole(target), whole(reference))
+
+
+def test_another_family_in_the_folder_is_refused(reference):
+    with pytest.raises(BladegenError, match=r"another family \(seed: 7 there, 8 asked for"):
+        run(Order(planned(seed=8), reference), resume=True)
+    with pytest.raises(BladegenError, match="--resume goes on"):
+        run(Order(planned(), reference))
+    with pytest.raises(BladegenError, match="dtype"):
+        run(Order(planned(), reference, dtype="float64"), resume=True)
+
+
+def test_a_family_already_whole_is_left_as_it_is(reference):
+    before = whole(reference)
+    assert run(Order(planned(), reference), resume=True) == 0
+    same(whole(reference), before)
+
+
+def test_a_damaged_or_foreign_folder_is_refused(tmp_path):
+    (tmp_path / "family.json").write_text("{")
+    with pytest.raises(BladegenError, match="holds another family"):
+        run(Order(planned(), tmp_path))
+    (tmp_path / "family.json").unlink()
+    (tmp_path / "manifest.parquet").write_text("")
+    with pytest.raises(BladegenError, match=r"without family\.json"):
+        run(Order(planned(), tmp_path))
+
+
+def test_two_runs_in_one_folder_are_refused(tmp_path):
+    place = FamilyFolder(tmp_path)
+    with place.alone(), pytest.raises(BladegenError, match="another run is writing"):
+        run(Order(planned(), tmp_path))
+
+
+def test_files_of_each_variant_are_written_and_listed(tmp_path):
+    family = planned(count=3, reach=0.5)
+    order = Order(family, tmp_path / "one", ("step", "stl"))
+    run(order)
+    table = pq.read_table(tmp_path / "one" / "manifest.parquet").to_pydict()
+    assert table["step_problem"] == ["", "", ""]
+    for place, name in enumerate(table["step_file"]):
+        path = tmp_path / "one" / name
+        assert table["step_sha256"][place] == digest_of(path)
+        assert cad.is_valid(cad_files.read_step(path))
+        figures = checks.mesh_figures(mesh.read(path.with_suffix(".stl")))
+        assert figures["watertight"]
+        assert_allclose(
+            mesh.read(path.with_suffix(".stl")).volume, volume(family.variant(place)), rtol=1e-3
+        )
+    run(Order(family, tmp_path / "two", ("step", "stl")))
+    assert (tmp_path / "one" / "manifest.parquet").read_bytes() == (
+        tmp_path / "two" / "manifest.parquet"
+    ).read_bytes()
+
+
+def test_marked_variants_have_no_files(tmp_path):
+    asked = {"bounds": {"t1": (5.0, 6.0)}, "invalid": "keep", "spans": SPANS}
+    family = bg.family(planned().blade, bg.ShapeSpace.bundled(), count=2, **asked)
+    run(Order(family, tmp_path, ("stl",)))
+    table = pq.read_table(tmp_path / "manifest.parquet").to_pydict()
+    assert table["valid"] == [False, False]
+    assert table["stl_file"] == ["", ""]
+    assert "t1" not in table["reason"][0]
+    assert table["reason"][0]
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda path: Order(planned(), path, ("doc",)), "suffix"),
+        (lambda path: Order(planned(), path, dtype="int"), "dtype"),
+        (lambda path: run(Order(planned(), path), jobs=0), "jobs"),
+    ],
+)
+def test_what_cannot_be_ordered_is_refused(tmp_path, make, said):
+    with pytest.raises(BladegenError, match=said):
+        make(tmp_path)
+
+
+def test_the_identity_is_readable(reference):
+    found = json.loads((reference / "family.json").read_text())
+    assert found["seed"] == 7
+    assert found["count"] == COUNT
+    assert found["factors"]["t1"][0] < 0 < found["factors"]["t1"][1]

@@ -294,7 +294,8 @@ class Blade(Perturbable):
         eta : (...) array
             Span fractions.
         u : (m,) array, optional
-            Other landmark parameters, as for `profiles`.
+            Other landmark parameters, as for `profiles`; 0 and 1 among them, where trailing
+            edges are finished.
 
         Returns
         -------

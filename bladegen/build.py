@@ -17,11 +17,13 @@ from bladegen import __version__, cad, cad_files, checks, exporters, mesh
 from bladegen.blade import Blade
 from bladegen.errors import ToleranceError
 from bladegen.files import folder, replacing, safe_stem
+from bladegen.spanwise import spanwise, write_csv
 
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
 
 DEFAULT_FORMATS = ("step", "stl", "glb", "png")
 LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk")
+SPANWISE_ROWS = 60  # in the report; the CSV file holds all
 FROM_FILE = ("solids", "faces", "valid", "closed", "area_m2", "bounds_m")
 _SOLIDS, _MESHES = tuple(cad_files.READERS), (".stl", ".glb", ".ply", ".obj", ".3mf")
 
@@ -96,6 +98,13 @@ def build(
                 report.setdefault("meshes", {})[path.suffix.lstrip(".")] = checks.mesh_figures(
                     mesh.read(made)
                 )
+    table = target / f"{stem}.spanwise.csv"
+    columns = spanwise(blade, blade.stations(options.stations))
+    with replacing(table) as temporary:
+        write_csv(columns, temporary)
+    files.append({"name": table.name, "bytes": table.stat().st_size})
+    some = slice(None, None, max(1, options.stations // SPANWISE_ROWS))
+    report["spanwise"] = {name: values[some].tolist() for name, values in columns.items()}
     report["files"] = files
     report["seconds"] = {stage: round(spent, 3) for stage, spent in seconds.items()}
     with replacing(report_path(target, blade.name)) as temporary:

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from bladegen import affine, cad, cad_files, mesh, properties
+from bladegen import affine, cad, cad_files, mesh, properties, smoothness
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.crossing import crossing_sections
-from bladegen.errors import FileError
+from bladegen.errors import FileError, Finding
 from bladegen.sections import SectionSplines
 
 __all__ = ["Check", "check_blade", "check_file", "mesh_figures", "solid_figures"]
@@ -143,7 +143,8 @@ def check_blade(blade: Blade) -> Check:
         "thickness_error": None
         if thickness is None
         else float(np.abs(curves.relative_thickness - thickness).max()),
-        "findings": [str(finding) for finding in blade.findings],
+        **_smoothness(blade),
+        "findings": [str(finding) for finding in (*blade.findings, *_bulges(blade))],
     }
     finished = blade.trailing_edge(profiles, blade.chord(eta))
     problems = [
@@ -151,6 +152,26 @@ def check_blade(blade: Blade) -> Check:
     ]
     figures["sections_crossing"] = len(problems)
     return Check(blade.definition.source or blade.name, "blade", figures, tuple(problems))
+
+
+def _smoothness(blade: Blade) -> dict[str, Any]:
+    eta, angle = smoothness.creases(blade)
+    worst = int(np.argmax(angle)) if angle.size else None
+    return {
+        "crease_deg": 0.0 if worst is None else float(np.degrees(angle[worst])),
+        "crease_at_eta": None if worst is None else float(eta[worst]),
+    }
+
+
+def _bulges(blade: Blade) -> list[Finding]:
+    return [
+        Finding(
+            f"eta = {eta:.4f}",
+            f"the trailing edge's width leaves that of the stations beside it by "
+            f"{100 * excess:.2f} % of the chord",
+        )
+        for eta, excess in smoothness.edge_bulges(blade)
+    ]
 
 
 def _missed(blade: Blade) -> Array:

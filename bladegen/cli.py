@@ -15,11 +15,14 @@ from bladegen.cli_options import (
     Formats,
     Json,
     Landmarks,
+    LightOption,
     PathKind,
     PathOption,
     Planes,
     PlanesOption,
+    SchemaOption,
     Stations,
+    StepSchema,
     TipKind,
     TipOption,
     Tolerance,
@@ -126,10 +129,12 @@ def build(
     trailing_edge: EdgeOption = "2mm",
     tip: TipOption = TipKind.flat,
     unit: UnitOption = Unit.m,
+    step: SchemaOption = StepSchema.ap242,
+    light: LightOption = False,
 ) -> None:
     """Build a blade: a STEP solid, meshes, a picture and a report."""
     made = read_blade(blade, landmarks, path, planes, trailing_edge)
-    options = build_options(tolerance, stations, tip, unit)
+    options = build_options(tolerance, stations, tip, unit, step, light)
     _build(made, output, formats, options)
 
 
@@ -177,6 +182,8 @@ def perturb(
     trailing_edge: EdgeOption = "2mm",
     tip: TipOption = TipKind.flat,
     unit: UnitOption = Unit.m,
+    step: SchemaOption = StepSchema.ap242,
+    light: LightOption = False,
 ) -> None:
     """Perturb a blade consistently and build it."""
     from math import radians
@@ -185,7 +192,7 @@ def perturb(
     from bladegen.texts import coordinates, span_window
 
     t = coordinates(pga or [])
-    options = build_options(tolerance, stations, tip, unit)
+    options = build_options(tolerance, stations, tip, unit, step, light)
     made = read_blade(blade, landmarks, path, planes, trailing_edge)
     variant = made.perturbed(
         None if t is None else ShapeSpace.load(space) if space else ShapeSpace.bundled(),

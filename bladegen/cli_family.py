@@ -11,11 +11,14 @@ from bladegen.cli_options import (
     BladeName,
     EdgeOption,
     Formats,
+    LightOption,
     PathKind,
     PathOption,
     Planes,
     PlanesOption,
+    SchemaOption,
     Stations,
+    StepSchema,
     TipKind,
     TipOption,
     Tolerance,
@@ -71,6 +74,8 @@ def family(
     tolerance: Tolerance = "0.3mm",
     tip: TipOption = TipKind.flat,
     unit: UnitOption = Unit.m,
+    step: SchemaOption = StepSchema.ap242,
+    light: LightOption = False,
     path: PathOption = PathKind.geodesic,
     planes: PlanesOption = Planes.axis,
     trailing_edge: EdgeOption = "2mm",
@@ -112,7 +117,7 @@ def family(
         output,
         tuple(formats or ()),
         "float64" if double else "float32",
-        build_options(tolerance, stations, tip, unit),
+        build_options(tolerance, stations, tip, unit, step, light),
     )
     try:
         with _cluster(dask) as client, variants_bar(len(planned)) as progress:

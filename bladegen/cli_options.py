@@ -11,11 +11,14 @@ __all__ = [
     "Formats",
     "Json",
     "Landmarks",
+    "LightOption",
     "PathKind",
     "PathOption",
     "Planes",
     "PlanesOption",
+    "SchemaOption",
     "Stations",
+    "StepSchema",
     "TipKind",
     "TipOption",
     "Tolerance",
@@ -24,6 +27,9 @@ __all__ = [
     "build_options",
     "read_blade",
 ]
+
+
+LIGHT = "1mm"
 
 
 class PathKind(StrEnum):
@@ -47,6 +53,13 @@ class Unit(StrEnum):
     mm = "mm"
 
 
+class StepSchema(StrEnum):
+    """Application protocols of STEP files."""
+
+    ap242 = "ap242"
+    ap214 = "ap214"
+
+
 class Planes(StrEnum):
     """Which way section planes face."""
 
@@ -67,6 +80,8 @@ Tolerance = Annotated[
 Stations = Annotated[int, typer.Option(help="Sections of the meshes.")]
 TipOption = Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")]
 UnitOption = Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ and VTP files.")]
+SchemaOption = Annotated[StepSchema, typer.Option("--step", help="Schema of STEP files.")]
+LightOption = Annotated[bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
 PathOption = Annotated[
@@ -103,14 +118,22 @@ def read_blade(source: str, landmarks: int, path: str, planes: Planes, edge: str
     )
 
 
-def build_options(tolerance: str, stations: int, tip: TipKind, unit: Unit) -> Any:
+def build_options(
+    tolerance: str,
+    stations: int,
+    tip: TipKind,
+    unit: Unit,
+    schema: StepSchema,
+    light: bool = False,
+) -> Any:
     """Return how products are made, as the options say."""
     from bladegen import cad
     from bladegen.exporters import Options
     from bladegen.texts import metres
 
     return Options(
-        tolerance=metres(tolerance, "tolerance"),
+        tolerance=metres(LIGHT if light else tolerance, "tolerance"),
+        step_schema=schema,
         stations=stations,
         tip={"flat": cad.flat_tip, "round": cad.round_tip}[tip],
         unit=unit,

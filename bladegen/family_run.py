@@ -22,21 +22,13 @@ from bladegen.family_files import FLOAT_TYPES, FamilyFolder, digest_of, sections
 from bladegen.files import folder
 from bladegen.identity import fingerprint, identity
 from bladegen.net import fitted
+from bladegen.spanwise import UNITS
 
 __all__ = ["Order", "run"]
 
 TIMESTAMP = "1970-01-01T00:00:00"  # in STEP files, so that the same blade makes the same bytes
 FEW = 8  # variants in a block that writes files for each
 RESTARTS = 5  # of a pool whose worker died, without any block done in between
-UNITS = {
-    "area": "m2",
-    "centroid_x": "m",
-    "centroid_y": "m",
-    "inertia_xx": "m4",
-    "inertia_yy": "m4",
-    "inertia_xy": "m4",
-    "perimeter": "m",
-}
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,7 @@ from bladegen.definition import Distribution, Interpolant, pchip
 __all__ = ["GeodesicPath", "Parameter", "Path", "SectionSpline", "SplinePath"]
 
 EQUAL_THICKNESS = 1e-3  # of chord; neighbours closer than this are told apart by span instead
+NOISE = 1e-3  # rad; neighbours closer than this are told apart by their digits alone: no slope
 SAME_SHAPE = 1e-12  # rad; neighbours closer than this are one shape, constant between them
 
 
@@ -224,7 +225,7 @@ def _slopes(knots: Array, V: Array) -> Array:
     half the length of the sum is added to that of the difference.
     """
     secants = np.diff(V, axis=0) / np.diff(knots)[:, None, None]
-    same = grassmann.norm(np.diff(V, axis=0)) <= SAME_SHAPE
+    same = grassmann.norm(np.diff(V, axis=0)) <= NOISE
     steps = np.empty((len(knots) + 3, *V.shape[1:]))  # two more at either end
     steps[2:-2] = secants
     turn = secants[:1] - secants[1:2] if len(secants) > 1 else np.zeros_like(secants)

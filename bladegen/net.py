@@ -18,11 +18,14 @@ __all__ = ["Deviation", "SurfaceNet", "fit", "fitted"]
 
 DEGREE = 3
 FIRST_SECTIONS = 120
-MAX_SECTIONS = 360  # keeps a STEP file of 401 landmarks below 15 MB
-REFINEMENTS = 8
+MAX_SECTIONS = 480
+MAX_LANDMARKS = 1601
+REFINEMENTS = 14
 MENDINGS = 6  # single sections that may be added where the final measurement is over
 MAXIMUM_SHARE = 0.5  # of the tolerance may be spent between sections at most
 RMS_SHARE = 0.08  # and in the mean; the rest is left to what lies between landmarks
+COARSE = (4, 2, 1)  # strides through the blade's landmarks to begin with
+BETWEEN_SHARE = 0.6  # of the tolerance, between landmarks: where more is missed, some are added
 
 
 @dataclass(frozen=True)
@@ -178,13 +181,14 @@ def fitted(
     v = spans
     if v is None:
         v = blade.stations(FIRST_SECTIONS if sections is None else sections)
+    u = blade.u if sections is not None else _landmarks(blade, v, tolerance)
     for _ in range(REFINEMENTS):
         progress(f"fitting {len(v)} sections")
-        net = fit(blade.sections(v), blade.u, v)
+        net = fit(_sections(blade, v, u), u, v)
         if sections is not None:
             break
         middles = 0.5 * (v[1:] + v[:-1])
-        offsets = net.offsets(blade.sections(middles), blade.u, middles)
+        offsets = net.offsets(_sections(blade, middles, u), u, middles)
         worst = np.abs(offsets).max(axis=1)
         rms = np.sqrt(np.mean(offsets**2, axis=1))
         excess = np.maximum(worst / MAXIMUM_SHARE, rms / RMS_SHARE) / tolerance
@@ -199,9 +203,44 @@ def fitted(
             break
         i = int(np.clip(np.searchsorted(v, measured.eta), 1, len(v) - 1))
         v = np.sort(np.append(v, 0.5 * (v[i - 1] + v[i])))
-        net = fit(blade.sections(v), blade.u, v)
+        net = fit(_sections(blade, v, u), u, v)
         measured = deviation(net, blade)
     return net, measured
+
+
+def _sections(blade: Blade, v: Array, u: Array) -> Array:
+    return blade.sections(v, None if u is blade.u else u)
+
+
+def _landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
+    """Return as few landmark parameters as keep splines close to the airfoils' own.
+
+    Every so many-th of the blade's to begin with, then more where they are needed, on both
+    sides alike: the blade's own first, and others between them where noise of the airfoils is
+    finer than these.
+    """
+    from scipy.interpolate import CubicSpline
+
+    half = len(blade.u) // 2
+    stride = next(step for step in COARSE if half % step == 0)
+    u = blade.u[::stride]
+    while len(u) < MAX_LANDMARKS:
+        at = np.searchsorted(blade.u, u)
+        between = np.clip((at[1:] + at[:-1]) // 2, 0, len(blade.u) - 1)
+        own = (np.diff(at) > 1) & (blade.u[at[:-1]] == u[:-1]) & (blade.u[at[1:]] == u[1:])
+        middles = np.where(own, blade.u[between], 0.5 * (u[1:] + u[:-1]))
+        middles[len(middles) // 2 :] = 1.0 - middles[: len(middles) // 2][::-1]
+        spline = CubicSpline(u, _sections(blade, v, u), axis=1)
+        missed = blade.sections(v, middles) - spline(middles)
+        along = spline(middles, 1)
+        along /= np.linalg.norm(along, axis=-1, keepdims=True)
+        missed = np.linalg.norm(np.cross(missed, along), axis=-1)
+        split = missed.max(axis=0) > BETWEEN_SHARE * tolerance
+        split |= split[::-1]
+        if not split.any():
+            break
+        u = np.sort(np.concatenate([u, middles[split]]))
+    return u
 
 
 def deviation(net: SurfaceNet, blade: Blade) -> Deviation:

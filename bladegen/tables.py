@@ -91,6 +91,9 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
     ]
     if figures["thickness_error"] is not None:
         rows.append(["thickness off its spline by", f"{figures['thickness_error']:.1e} chord"])
+    if figures["crease_at_eta"] is not None:
+        crease = f"{figures['crease_deg']:.2f} deg at eta = {figures['crease_at_eta']:.3f}"
+        rows.append(["largest crease", crease])
     if "solid" in report:
         solid = report["solid"]
         deviation = solid["deviation_mm"]

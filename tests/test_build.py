@@ -23,7 +23,7 @@ def folder(blade, tmp_path_factory):
 
 
 def test_the_default_files_are_made(folder):
-    suffixes = {".step", ".stl", ".glb", ".png", ".json"}
+    suffixes = {".step", ".stl", ".glb", ".png", ".json", ".csv"}
     assert {path.suffix for path in folder.iterdir()} == suffixes
     assert all(path.name.startswith("nrel5mw.") for path in folder.iterdir())
 
@@ -60,7 +60,12 @@ def test_a_missed_tolerance_is_said_and_the_rest_is_made(blade, tmp_path, monkey
     with pytest.raises(ToleranceError):
         build(blade, tmp_path, formats=["step", "stl"], options=Options(tolerance=1e-5))
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {"nrel5mw.out-of-tolerance.step", "nrel5mw.stl", "nrel5mw.report.json"}
+    assert names == {
+        "nrel5mw.out-of-tolerance.step",
+        "nrel5mw.stl",
+        "nrel5mw.report.json",
+        "nrel5mw.spanwise.csv",
+    }
 
 
 def test_an_unknown_format_is_refused_before_anything_is_made(blade, tmp_path):

@@ -57,7 +57,7 @@ def test_build_makes_what_is_asked_for(tmp_path):
     )  # fmt: skip
     assert result.exit_code == 0, result.output
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {"nrel5mw.stl", "nrel5mw.ply", "nrel5mw.report.json"}
+    assert names == {"nrel5mw.stl", "nrel5mw.ply", "nrel5mw.report.json", "nrel5mw.spanwise.csv"}
     assert "watertight" in result.output
     report = json.loads((tmp_path / "nrel5mw.report.json").read_text())
     assert report["settings"]["path"] == "spline_path"
@@ -180,7 +180,11 @@ def test_perturb_by_affine_parameters_alone_and_names(tmp_path):
         "--format", "ply", "--landmarks", 101,
     )  # fmt: skip
     assert result.exit_code == 0, result.output
-    assert {path.name for path in tmp_path.iterdir()} == {"wide.ply", "wide.report.json"}
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "wide.ply",
+        "wide.report.json",
+        "wide.spanwise.csv",
+    }
 
 
 def test_perturb_beyond_the_bounds_ends_with_1(tmp_path):
@@ -234,3 +238,17 @@ def test_a_space_from_a_folder_of_airfoils(tmp_path):
     empty.mkdir()
     nothing = run("space", "build", "-o", out, "--airfoils", empty)
     assert "holds no airfoil files" in str(nothing.exception)
+
+
+def test_light_solids_are_small_and_say_their_schema(tmp_path):
+    result = run(
+        "build", "dtu10mw", "-o", tmp_path, "--light", "--step", "ap214", "--format", "step"
+    )
+    assert result.exit_code == 0, result.output
+    assert (tmp_path / "dtu10mw.step").stat().st_size < 2e6
+    assert "AUTOMOTIVE_DESIGN" in (tmp_path / "dtu10mw.step").read_text()[:2000]
+    report = json.loads((tmp_path / "dtu10mw.report.json").read_text())
+    assert report["settings"]["tolerance_mm"] == 1.0
+    assert report["solid"]["deviation_mm"]["maximum"] < 1.0
+    assert report["figures"]["crease_deg"] > 0
+    assert len(report["spanwise"]["area_m2"]) >= 60

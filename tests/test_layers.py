@@ -38,6 +38,8 @@ FLOW = [
     "designs",
     "families",
     "properties",
+    "smoothness",
+    "spanwise",
     "cst",
     "database",
     "net",

@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 from bladegen import net
 from bladegen.blade import Blade
 from bladegen.landmarks import landmark_parameters, landmarks
-from bladegen.readers import read
+from bladegen.net import fitted
+from bladegen.readers import bundled, read
 from strategies import SEEDS, definitions, ellipse
 
 U = landmark_parameters(101)
@@ -86,3 +87,29 @@ def test_a_finer_tolerance_takes_more_sections_and_gives_less_deviation():
     assert coarse[1].maximum > fine[1].maximum
     fixed, _ = net.fitted(blade, 1e-3, sections=50)
     assert len(fixed.v) == 50
+
+
+@pytest.mark.parametrize("path", ["geodesic", "spline"])
+@pytest.mark.parametrize("name", bundled())
+def test_hundredths_of_a_millimetre_are_reached(name, path):
+    blade = Blade.from_definition(read(name), path=path)
+    surface, measured = fitted(blade, 5e-5)
+    assert measured.maximum <= 5e-5
+    spans = np.linspace(0.013, 0.987, 23)  # seen by nobody before
+    u = np.sort(np.concatenate([[0.0, 1.0], blade.u[3::7], 1 - blade.u[3::7]]))
+    assert np.abs(surface.offsets(blade.sections(spans, u), u, spans)).max() <= 5e-5
+
+
+@pytest.mark.parametrize("name", bundled())
+def test_a_coarse_tolerance_needs_few_poles(name):
+    blade = Blade.from_definition(read(name))
+    surface, measured = fitted(blade, 1e-3)
+    assert measured.maximum <= 1e-3
+    assert surface.poles.size / 3 < 19_000  # 2 MB of STEP
+
+
+def test_noise_between_landmarks_is_followed_where_it_must_be():
+    blade = Blade.from_definition(read("nrel5mw"), path="spline")
+    surface, _ = fitted(blade, 5e-5)
+    assert len(surface.u) > len(blade.u)
+    assert_allclose(surface.u + surface.u[::-1], 1.0, atol=1e-15)

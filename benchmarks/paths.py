@@ -1,0 +1,68 @@
+"""Geodesics, smooth splines and plain blending: who predicts a station that was left out?
+
+    python benchmarks/paths.py
+
+Each inner station of each blade is left out in turn and predicted from the others: RMS distance
+of its landmarks in % chord, sections of unit chord brought to the station's own thickness. Paths
+run in span or in relative thickness.  Blending is that of coordinates, linear and by monotone
+splines (PCHIP).  Then the creases: the largest jump of the surface normal across a station.
+"""
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator, interp1d
+
+import bladegen as bg
+from bladegen import affine
+from bladegen.blade import PATHS
+from bladegen.interpolation import Parameter, SectionSpline
+from bladegen.smoothness import creases
+
+WAYS = ("geodesic", "spline", "linear blend", "PCHIP blend")
+
+
+def predicted(blade, left, way, by_thickness):
+    """The left-out station's section, of unit chord and its own thickness."""
+    keep = np.arange(len(blade.eta)) != left
+    place, wanted = blade.eta[left], blade.wanted_thickness(blade.eta[left : left + 1])
+    ruling = blade.definition.relative_thickness if by_thickness else None
+    parameter = Parameter(blade.eta[keep], ruling)
+    q = parameter(np.array([place]))
+    if way in PATHS:
+        path, M = PATHS[way](parameter.knots, blade.representatives[keep], blade.M[keep])
+        X = path(q)
+        Mq, bq = SectionSpline(parameter.knots, M, blade.b[keep])(q)
+        points = affine.restore(X, Mq, bq)
+    else:
+        given = affine.restore(blade.representatives, blade.M, blade.b)[keep]
+        make = interp1d if way == "linear blend" else PchipInterpolator
+        points = make(parameter.knots, given, axis=0)(q)
+    A, c = blade.splines.normalising(points, wanted)
+    return affine.restore(points, A, c)[0]
+
+
+def main():
+    print(f"{'blade':8} {'in':9} " + " ".join(f"{way:>13}" for way in WAYS) + "   [% chord, RMS]")
+    for name in bg.bundled():
+        blade = bg.Blade.from_definition(bg.read(name))
+        truth = blade.profiles(blade.eta)
+        for by_thickness in (False, True):
+            medians = []
+            for way in WAYS:
+                inner = range(1, len(blade.eta) - 1)
+                off = [predicted(blade, k, way, by_thickness) - truth[k] for k in inner]
+                squares = np.sum(np.square(off), axis=-1)
+                medians.append(100 * np.median(np.sqrt(squares.mean(axis=-1))))
+            where = "thickness" if by_thickness else "span"
+            print(f"{name:8} {where:9} " + " ".join(f"{m:13.3f}" for m in medians))
+    print("\nlargest crease across a station [deg]")
+    for name in bg.bundled():
+        figures = []
+        for path in ("geodesic", "spline"):
+            eta, angle = creases(bg.Blade.from_definition(bg.read(name), path=path))
+            worst = int(np.argmax(angle))
+            figures.append(f"{path} {np.degrees(angle[worst]):.3f} at eta = {eta[worst]:.3f}")
+        print(f"{name:8} " + ", ".join(figures))
+
+
+if __name__ == "__main__":
+    main()

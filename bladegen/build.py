@@ -9,6 +9,7 @@ import platform
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from bladegen import __version__, cad, cad_files, checks, exporters, mesh
 from bladegen.blade import Blade
 from bladegen.errors import ToleranceError
 from bladegen.files import folder, replacing, safe_stem
+from bladegen.rotor import Rotor, write_glb, write_step
 from bladegen.spanwise import spanwise, write_csv
 
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
@@ -34,6 +36,7 @@ def build(
     *,
     formats: Sequence[str] = DEFAULT_FORMATS,
     options: exporters.Options | None = None,
+    rotor: Rotor | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
     """Write a blade's files and its report into a folder.
@@ -48,6 +51,8 @@ def build(
         Suffixes, with or without their dot.
     options : Options, optional
         How products are made.
+    rotor : Rotor, optional
+        Write the whole rotor too, as ``<name>.rotor.step`` and ``<name>.rotor.glb``.
     progress : callable
         Told what is being done.
 
@@ -98,6 +103,16 @@ def build(
                 report.setdefault("meshes", {})[path.suffix.lstrip(".")] = checks.mesh_figures(
                     mesh.read(made)
                 )
+    if rotor is not None:
+        report["rotor"] = asdict(rotor)
+        for path, make, product in (
+            (target / f"{stem}.rotor.step", write_step, "solid"),
+            (target / f"{stem}.rotor.glb", write_glb, "mesh"),
+        ):
+            progress(f"writing {path.name}")
+            with _timed(seconds, "rotor"), replacing(path) as temporary:
+                make(rotor, getattr(products, product), temporary)
+            files.append({"name": path.name, "bytes": path.stat().st_size})
     table = target / f"{stem}.spanwise.csv"
     columns = spanwise(blade, blade.stations(options.stations))
     with replacing(table) as temporary:

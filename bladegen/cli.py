@@ -131,11 +131,22 @@ def build(
     unit: UnitOption = Unit.m,
     step: SchemaOption = StepSchema.ap242,
     light: LightOption = False,
+    rotor: Annotated[
+        bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
+    ] = False,
+    mirror: Annotated[
+        bool, typer.Option("--mirror", help="A rotor that turns anticlockwise seen from upwind.")
+    ] = False,
 ) -> None:
     """Build a blade: a STEP solid, meshes, a picture and a report."""
     made = read_blade(blade, landmarks, path, planes, trailing_edge)
     options = build_options(tolerance, stations, tip, unit, step, light)
-    _build(made, output, formats, options)
+    whole = None
+    if rotor or mirror:
+        from bladegen.rotor import rotor_of
+
+        whole = rotor_of(made, mirrored=mirror)
+    _build(made, output, formats, options, whole)
 
 
 @app.command()
@@ -270,7 +281,9 @@ def check(
         raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
 
 
-def _build(blade: Any, output: Path, formats: list[str] | None, options: Any) -> None:
+def _build(
+    blade: Any, output: Path, formats: list[str] | None, options: Any, rotor: Any = None
+) -> None:
     """Build a blade's files and print what was made, a missed tolerance included."""
     from bladegen.build import DEFAULT_FORMATS
     from bladegen.build import build as build_files
@@ -284,6 +297,7 @@ def _build(blade: Any, output: Path, formats: list[str] | None, options: Any) ->
                 output,
                 formats=formats or DEFAULT_FORMATS,
                 options=options,
+                rotor=rotor,
                 progress=progress,
             )
         except ToleranceError as error:

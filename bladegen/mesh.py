@@ -5,6 +5,7 @@ closes a blunt trailing edge, and caps zipped between opposite landmarks at root
 mesh is watertight and its triangles face outward.  Lengths are those of the sections, metres.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,13 @@ from bladegen.arrays import Array, Indices, readonly
 from bladegen.blade import Blade
 from bladegen.errors import FileError, GeometryError
 
-__all__ = ["TriangleMesh", "from_blade", "surface", "to_trimesh"]
+__all__ = [
+    "TriangleMesh",
+    "assembled",
+    "from_blade",
+    "surface",
+    "to_trimesh",
+]
 
 SECTIONS = 300  # 300 x 401 landmarks make 240,000 triangles
 SAME_POINT = 1e-9  # m; landmarks nearer than this are one vertex
@@ -105,6 +112,27 @@ def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
     return trimesh.Trimesh(
         vertices=mesh.vertices * scale, faces=mesh.faces, process=False, validate=False
     )
+
+
+def assembled(parts: Sequence[tuple[str, TriangleMesh, Array, Array]]) -> bytes:
+    """Return named meshes, each turned (3, 3) and shifted (3,) [m], as one GLB file's bytes.
+
+    Points are ``p @ rotation.T + shift``; a mesh that stands in several places is stored once.
+    """
+    import trimesh
+
+    scene = trimesh.Scene()
+    known: dict[int, str] = {}
+    for name, mesh, rotation, shift in parts:
+        move = np.eye(4)
+        move[:3, :3], move[:3, 3] = rotation, shift
+        if id(mesh) in known:
+            scene.graph.update(name, matrix=move, geometry=known[id(mesh)])
+        else:
+            scene.add_geometry(to_trimesh(mesh), node_name=name, geom_name=name, transform=move)
+            known[id(mesh)] = name
+    data: bytes = scene.export(file_type="glb")
+    return data
 
 
 def read(path: Path) -> Any:

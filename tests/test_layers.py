@@ -46,6 +46,7 @@ FLOW = [
     "mesh",
     "cad",
     "cad_files",
+    "rotor",
     "checks",
     "preview",
     "exporters",
@@ -64,7 +65,7 @@ FLOW = [
     "cli",
 ]
 LATE = {
-    "cadquery": {"cad"},
+    "cadquery": {"cad", "rotor"},
     "OCP": {"cad", "cad_files", "checks"},
     "trimesh": {"mesh"},
     "pyvista": {"preview"},

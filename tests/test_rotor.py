@@ -1,0 +1,89 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.testing import assert_allclose
+
+from bladegen import cad, cad_files, mesh
+from bladegen.blade import Blade
+from bladegen.errors import CadError
+from bladegen.readers import read
+from bladegen.rotor import rotor_of, write_glb, write_step
+
+
+@pytest.fixture(scope="module")
+def blade():
+    return Blade.from_definition(read("iea15mw"), landmarks=101)
+
+
+def test_blades_stand_around_the_hub_and_lean_upwind(blade):
+    rotor = rotor_of(blade)
+    rotations, shifts = rotor.placements()
+    assert_allclose(rotations @ rotations.mT, np.broadcast_to(np.eye(3), (3, 3, 3)), atol=1e-15)
+    assert_allclose(np.linalg.det(rotations), 1)
+    assert_allclose(np.linalg.norm(shifts, axis=1), 3.97)
+    tips = rotations @ [0.0, 0.0, blade.length] + shifts
+    assert np.all(tips[:, 0] < 0)
+    assert_allclose(tips[:, 0], -np.sin(rotor.cone) * (blade.length + 3.97))
+    assert tips[0, 2] > 0
+    around = np.arctan2(tips[:, 1], tips[:, 2])
+    assert_allclose(np.sort(np.mod(np.diff(around), 2 * np.pi)), [2 * np.pi * 2 / 3] * 2)
+
+
+@pytest.mark.parametrize(("mirrored", "sense"), [(False, 1.0), (True, -1.0)])
+def test_leading_edges_go_first_clockwise_seen_from_upwind(blade, tmp_path, mirrored, sense):
+    """Seen along +x with z up, right is -y: clockwise motion of the upper blade is to -y."""
+    rotor = rotor_of(blade, mirrored=mirrored)
+    write_glb(rotor, mesh.from_blade(blade, stations=40), tmp_path / "r.glb")
+    scene = trimesh.load_scene(tmp_path / "r.glb")
+    assert set(scene.graph.nodes_geometry) == {"blade 1", "blade 2", "blade 3", "spinner"}
+    for name in ("blade 1", "blade 2", "blade 3"):
+        matrix, geometry = scene.graph[name]
+        solid = scene.geometry[geometry]
+        solid = trimesh.Trimesh(solid.vertices, solid.faces).apply_transform(matrix)
+        solid.merge_vertices()
+        assert solid.is_watertight
+        assert solid.volume > 0
+        middle = 0.6 * (blade.length + 3.97)
+        points = solid.vertices
+        radius = np.linalg.norm(points[:, 1:], axis=1)
+        ring = points[np.abs(radius - middle) < 0.03 * middle]
+        angle = np.arctan2(-ring[:, 1], ring[:, 2])  # clockwise from the top, seen from upwind
+        centre = np.angle(np.mean(np.exp(1j * angle)))
+        offset = np.angle(np.exp(1j * (angle - centre)))
+        # the thick side of a section is its leading side
+        front = np.ptp(ring[offset > 0.5 * offset.max(), 0])
+        back = np.ptp(ring[offset < 0.5 * offset.min(), 0])
+        assert (front - back) * sense > 0
+
+
+def test_the_assembly_has_named_parts_that_are_valid(blade, tmp_path):
+    solid = cad.solid(blade, sections=40)
+    rotor = rotor_of(blade)
+    path = tmp_path / "rotor.step"
+    write_step(rotor, solid, path)
+    text = path.read_text()
+    for name in ("blade 1", "blade 2", "blade 3", "spinner"):
+        assert f"'{name}'" in text
+    shape = cad_files.read(path)
+    assert cad.is_valid(shape)
+    from OCP.TopAbs import TopAbs_SOLID
+    from OCP.TopExp import TopExp_Explorer
+
+    found, explorer = [], TopExp_Explorer(shape, TopAbs_SOLID)
+    while explorer.More():
+        found.append(cad.volume(explorer.Current(), cad.COARSE_VOLUME) / 1e9)
+        explorer.Next()
+    assert len(found) == 4
+    assert_allclose(found[:3], solid.net.volume(), rtol=1e-3)
+
+
+def test_without_a_hub_radius_there_is_no_rotor(blade):
+    facts = replace(blade.definition.rotor, hub_radius=None)
+    bare = replace(blade, definition=replace(blade.definition, rotor=facts))
+    with pytest.raises(CadError, match="names no hub radius"):
+        rotor_of(bare)
+    facts = replace(blade.definition.rotor, blades=0)
+    with pytest.raises(CadError, match="0 blades"):
+        rotor_of(replace(blade, definition=replace(blade.definition, rotor=facts)))

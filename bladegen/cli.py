@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from bladegen import __version__, cli_space
+from bladegen.cli_check import check
 from bladegen.cli_family import family
 from bladegen.cli_options import (
     BladeName,
@@ -52,6 +53,7 @@ app = typer.Typer(
 
 
 app.add_typer(cli_space.app, name="space")
+app.command()(check)
 app.command()(family)
 
 
@@ -244,41 +246,6 @@ def preview(
     with replacing(screenshot) as temporary:
         view.picture(made, temporary)
     typer.echo(f"wrote {screenshot}")
-
-
-@app.command()
-def check(
-    file: Annotated[
-        str, typer.Argument(metavar="FILE", help="A STEP or mesh file, or a blade definition.")
-    ],
-    as_json: Json = False,
-) -> None:
-    """Measure a solid, a mesh or a blade definition; exit with 1 if it is not sound."""
-    from bladegen import checks
-    from bladegen.readers import SUFFIXES, bundled
-
-    if file in bundled() or Path(file).suffix.lower() in SUFFIXES:
-        result = checks.check_blade(read_blade(file, 401, PathKind.geodesic, Planes.axis, "2mm"))
-    else:
-        result = checks.check_file(Path(file))
-    if as_json:
-        typer.echo(
-            json.dumps(
-                {
-                    "source": result.source,
-                    "kind": result.kind,
-                    **result.figures,
-                    "problems": list(result.problems),
-                },
-                indent=2,
-            )
-        )
-    else:
-        figures = {k: v for k, v in result.figures.items() if k != "findings"}
-        print_figures(f"{result.source} ({result.kind})", figures)
-        print_findings(result.figures.get("findings", []))
-    if result.problems:
-        raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
 
 
 def _build(

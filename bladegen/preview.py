@@ -18,7 +18,7 @@ from bladegen.blade import Blade
 from bladegen.errors import RenderError
 from bladegen.mesh import TriangleMesh, from_blade, surface
 
-__all__ = ["gallery", "picture", "require_renderer", "show", "write_vtp"]
+__all__ = ["INK", "gallery", "picture", "quietly", "require_renderer", "show", "write_vtp"]
 
 SIZE = (1920, 1080)
 SECTIONS = 240
@@ -106,7 +106,7 @@ def picture(blade: Blade, path: Path, *, size: tuple[int, int] = SIZE) -> None:
         If this machine cannot render, or the picture came out blank.
     """
     require_renderer()
-    with _quietly():
+    with quietly():
         plotter = _figure(blade, size)
         image = plotter.screenshot(None, return_img=True)
         plotter.close()
@@ -136,7 +136,7 @@ def gallery(
 
     require_renderer()
     rows = -(-len(sections) // columns)
-    with _quietly():
+    with quietly():
         plotter = pv.Plotter(
             off_screen=True, window_size=list(size), shape=(rows, columns), border=False
         )
@@ -374,7 +374,7 @@ def _caption(blade: Blade) -> str:
 
 
 @contextmanager
-def _quietly() -> Iterator[None]:
+def quietly() -> Iterator[None]:
     """Keep VTK's warnings off the terminal; what matters is checked."""
     from vtkmodules.vtkCommonCore import vtkLogger, vtkObject
 

@@ -109,7 +109,7 @@ def test_vtk_logs_again_after_a_picture():
     from vtkmodules.vtkCommonCore import vtkLogger
 
     before = vtkLogger.GetCurrentVerbosityCutoff()
-    with preview._quietly():
+    with preview.quietly():
         assert vtkLogger.GetCurrentVerbosityCutoff() < before
     assert vtkLogger.GetCurrentVerbosityCutoff() == before
 

@@ -1,0 +1,101 @@
+"""The command `bladegen check`: measure one thing, or the distance between two."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen.cli_options import Json, PathKind, Planes, read_blade
+from bladegen.errors import BladegenError
+from bladegen.terminal import print_figures, print_findings, print_table, progress_bar
+
+__all__ = ["check"]
+
+
+def check(
+    file: Annotated[
+        str, typer.Argument(metavar="FILE", help="A CAD or mesh file, or a blade definition.")
+    ],
+    other: Annotated[
+        str | None,
+        typer.Argument(metavar="[OTHER]", help="Another one: the distance between the two."),
+    ] = None,
+    screenshot: Annotated[
+        Path | None, typer.Option(help="With OTHER: a PNG of FILE coloured by distance.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Measure a solid, a mesh or a blade definition, or the distance between two of them.
+
+    Exit with 1 if a single one is not sound.
+    """
+    if other is not None:
+        _compare(file, other, screenshot, as_json)
+        return
+    if screenshot is not None:
+        raise BladegenError("screenshot: a picture is made of two files; name another one")
+    from bladegen import checks
+
+    blade = _blade(file)
+    result = checks.check_file(Path(file)) if blade is None else checks.check_blade(blade)
+    if as_json:
+        typer.echo(
+            json.dumps(
+                {
+                    "source": result.source,
+                    "kind": result.kind,
+                    **result.figures,
+                    "problems": list(result.problems),
+                },
+                indent=2,
+            )
+        )
+    else:
+        figures = {k: v for k, v in result.figures.items() if k != "findings"}
+        print_figures(f"{result.source} ({result.kind})", figures)
+        print_findings(result.figures.get("findings", []))
+    if result.problems:
+        raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
+
+
+def _blade(file: str) -> Any:
+    """Return the blade that a name or a definition means, None for other files."""
+    from bladegen.readers import SUFFIXES, bundled
+
+    if file in bundled() or Path(file).suffix.lower() in SUFFIXES:
+        return read_blade(file, 401, PathKind.geodesic, Planes.axis, "2mm")
+    return None
+
+
+def _compare(file: str, other: str, screenshot: Path | None, as_json: bool) -> None:
+    """Measure two surfaces against each other and print, or draw, what was found."""
+    from bladegen.comparison import compared, draw, surface_of
+    from bladegen.files import replacing
+
+    with progress_bar() as progress:
+        progress("reading")
+        one, two = (surface_of(_blade(name) or Path(name)) for name in (file, other))
+        progress("measuring distances")
+        found, note = compared(one, two)
+        if screenshot is not None:
+            progress("rendering")
+            with replacing(screenshot) as temporary:
+                draw(found, f"{file} against {other}", temporary)
+    if as_json:
+        figures = {"source": file, "other": other, **found.figures, "bands": found.bands()}
+        typer.echo(json.dumps(figures | {"note": note}, indent=2))
+        return
+    print_figures(f"{file} against {other}", found.figures)
+    rows = [
+        [
+            f"{band['from_z_m']:.2f} to {band['to_z_m']:.2f}",
+            *(f"{band[key]:.3f}" for key in ("maximum_mm", "rms_mm", "mean_mm")),
+        ]
+        for band in found.bands()
+    ]
+    print_table(["z, m", "largest, mm", "RMS, mm", "mean (outside +), mm"], rows)
+    if note:
+        typer.echo(f"note: {note}")
+    if screenshot is not None:
+        typer.echo(f"wrote {screenshot}")

@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help demo lint test bench clean
+.PHONY: help demo lint test docs bench clean
 
 help: ## show this
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -17,9 +17,13 @@ lint: ## set up, lint and check types
 test: lint ## the same, then run all tests
 	.venv/bin/python -m pytest -n 2 --cov --cov-report=term --cov-fail-under=95
 
+docs: ## set up and build the documentation into site/; warnings are errors
+	@./scripts/setup.sh test
+	NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --quiet
+
 bench: ## print the measured figures
 	@./scripts/setup.sh test
 	@for file in benchmarks/*.py; do echo "== $$file"; .venv/bin/python $$file; done
 
 clean: ## remove what was made here
-	rm -rf .venv out build dist .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv out site build dist .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache

@@ -1,0 +1,99 @@
+"""What is shipped: a wheel and an sdist that hold the blades and the shape space, and work."""
+
+import os
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import bladegen
+
+ROOT = Path(bladegen.__file__).parent.parent
+BLADES = ("dtu10mw", "iea15mw", "nrel5mw")
+RUN = "import sys; from bladegen.cli import main; sys.argv[0] = 'bladegen'; main()"
+
+
+@pytest.fixture(scope="module")
+def dist(tmp_path_factory):
+    """Wheel and sdist, built as they would be for a release."""
+    target = tmp_path_factory.mktemp("dist")
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-d", str(target)],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+    )
+    return next(target.glob("*.whl")), next(target.glob("*.tar.gz"))
+
+
+@pytest.fixture(scope="module")
+def unpacked(dist, tmp_path_factory):
+    """A folder that holds what the wheel installs, and nothing else of this checkout."""
+    target = tmp_path_factory.mktemp("site")
+    with zipfile.ZipFile(dist[0]) as wheel:
+        wheel.extractall(target)
+    return target
+
+
+def test_the_wheel_holds_blades_space_types_and_licence(dist):
+    with zipfile.ZipFile(dist[0]) as wheel:
+        names = set(wheel.namelist())
+    assert {f"bladegen/blades/{name}.yaml" for name in BLADES} <= names
+    assert {"bladegen/data/reference.npz", "bladegen/py.typed"} <= names
+    assert any(name.endswith("licenses/LICENSE") for name in names)
+    assert not any(name.startswith(("tests/", "docs/", "benchmarks/")) for name in names)
+
+
+def test_the_sdist_holds_what_tests_and_documentation_need(dist):
+    with tarfile.open(dist[1]) as sdist:
+        names = {name.split("/", 1)[1] for name in sdist.getnames() if "/" in name}
+    needed = ("blades/iea15mw.yaml", "tests/strategies.py", "docs/guide.md", "mkdocs.yml")
+    assert {*needed, "CONTRIBUTING.md", "CHANGELOG.md", "Makefile", "scripts/setup.sh"} <= names
+
+
+def test_a_wheel_can_be_made_from_the_sdist(dist, tmp_path):
+    with tarfile.open(dist[1]) as sdist:
+        sdist.extractall(tmp_path, filter="data")
+    source = next(tmp_path.iterdir())
+    done = subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path / "again")],
+        cwd=source,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    again = next((tmp_path / "again").glob("*.whl"))
+    with zipfile.ZipFile(dist[0]) as one, zipfile.ZipFile(again) as two:
+        assert set(one.namelist()) == set(two.namelist())
+
+
+@pytest.mark.parametrize("name", BLADES)
+def test_blades_are_built_from_what_the_wheel_installs(unpacked, tmp_path, name):
+    words = ["build", name, "-o", str(tmp_path), "--format", "stl", "--stations", "20"]
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, *words, "--landmarks", "101"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(unpacked)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / f"{name}.stl").stat().st_size > 10_000
+
+
+def test_it_is_the_wheel_that_runs_there(unpacked, tmp_path):
+    code = "import bladegen; print(bladegen.__file__); bladegen.ShapeSpace.bundled()"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(unpacked)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.startswith(str(unpacked))

@@ -21,9 +21,9 @@ docs: ## set up and build the documentation into site/; warnings are errors
 	@./scripts/setup.sh test
 	NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --quiet
 
-bench: ## print the measured figures
+bench: ## measure all benchmarks and write docs/measured.md
 	@./scripts/setup.sh test
-	@for file in benchmarks/*.py; do echo "== $$file"; .venv/bin/python $$file; done
+	.venv/bin/python benchmarks/table.py
 
 clean: ## remove what was made here
 	rm -rf .venv out site build dist .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache

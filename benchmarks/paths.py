@@ -9,6 +9,7 @@ splines (PCHIP).  Then the creases: the largest jump of the surface normal acros
 """
 
 import numpy as np
+from figures import figure
 from scipy.interpolate import PchipInterpolator, interp1d
 
 import bladegen as bg
@@ -40,28 +41,34 @@ def predicted(blade, left, way, by_thickness):
     return affine.restore(points, A, c)[0]
 
 
-def main():
-    print(f"{'blade':8} {'in':9} " + " ".join(f"{way:>13}" for way in WAYS) + "   [% chord, RMS]")
+def main() -> None:
+    """Print each blade's figures, plain blending of coordinates as the baseline."""
     for name in bg.bundled():
         blade = bg.Blade.from_definition(bg.read(name))
         truth = blade.profiles(blade.eta)
         for by_thickness in (False, True):
-            medians = []
+            medians = {}
             for way in WAYS:
                 inner = range(1, len(blade.eta) - 1)
                 off = [predicted(blade, k, way, by_thickness) - truth[k] for k in inner]
                 squares = np.sum(np.square(off), axis=-1)
-                medians.append(100 * np.median(np.sqrt(squares.mean(axis=-1))))
+                medians[way] = 100 * float(np.median(np.sqrt(squares.mean(axis=-1))))
             where = "thickness" if by_thickness else "span"
-            print(f"{name:8} {where:9} " + " ".join(f"{m:13.3f}" for m in medians))
-    print("\nlargest crease across a station [deg]")
+            for way, other in zip(WAYS[:2], WAYS[2:], strict=True):
+                figure(
+                    f"left-out station missed by, {way}",
+                    f"{name}, in {where}",
+                    medians[way],
+                    "% chord",
+                    beside=other,
+                    baseline=medians[other],
+                )
     for name in bg.bundled():
-        figures = []
-        for path in ("geodesic", "spline"):
+        for path in PATHS:
             eta, angle = creases(bg.Blade.from_definition(bg.read(name), path=path))
             worst = int(np.argmax(angle))
-            figures.append(f"{path} {np.degrees(angle[worst]):.3f} at eta = {eta[worst]:.3f}")
-        print(f"{name:8} " + ", ".join(figures))
+            case = f"{name}, eta {eta[worst]:.3f}"
+            figure(f"largest crease, {path}", case, float(np.degrees(angle[worst])), "deg")
 
 
 if __name__ == "__main__":

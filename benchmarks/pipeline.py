@@ -1,45 +1,43 @@
-"""How long a blade takes to build and to evaluate: medians, with a plain loop beside it."""
+"""The stages of a blade, from its file to files and a report: python benchmarks/pipeline.py
 
-import time
-from collections.abc import Callable
-from statistics import median
+Sections in a batch stand beside the same sections made one by one.
+"""
+
+import tempfile
+from pathlib import Path
 
 import numpy as np
+from figures import figure, seconds
 
 import bladegen as bg
+from bladegen.build import build
 
-RUNS = 15
-
-
-def seconds(call: Callable[[], object]) -> float:
-    """Median of `RUNS` calls, after one that warms up."""
-    call()
-    spent = []
-    for _ in range(RUNS):
-        start = time.perf_counter()
-        call()
-        spent.append(time.perf_counter() - start)
-    return median(spent)
+SPANS = 100
 
 
 def main() -> None:
-    """Print a row a blade."""
-    eta = np.linspace(0.0, 1.0, 100)
-    print("blade     read ms  build ms  100 x 401 sections ms  one by one ms  ratio")
+    """Print the stages of each blade."""
+    eta = np.linspace(0.0, 1.0, SPANS)
     for name in bg.bundled():
         definition = bg.read(name)
         blade = bg.Blade.from_definition(definition)
-        row = [
-            seconds(lambda name=name: bg.read(name)),
-            seconds(lambda definition=definition: bg.Blade.from_definition(definition)),
-            batch := seconds(lambda blade=blade: blade.sections(eta)),
-            loop := seconds(lambda blade=blade: [blade.sections(e) for e in eta]),
-        ]
-        read, build, *_ = (1e3 * value for value in row)
-        print(
-            f"{name:9s} {read:7.1f} {build:9.1f} {1e3 * batch:22.1f} {1e3 * loop:14.1f} "
-            f"{loop / batch:6.1f}"
+        figure("reading", name, 1e3 * seconds(lambda name=name: bg.read(name)), "ms")
+        made = seconds(lambda definition=definition: bg.Blade.from_definition(definition))
+        figure("blade from definition", name, 1e3 * made, "ms")
+        batch = seconds(lambda blade=blade: blade.sections(eta), runs=15)
+        loop = seconds(lambda blade=blade: [blade.sections(e) for e in eta])
+        figure(
+            f"{SPANS} sections of {len(blade.u)}",
+            name,
+            1e3 * batch,
+            "ms",
+            beside="one by one",
+            baseline=1e3 * loop,
         )
+        with tempfile.TemporaryDirectory() as folder:
+            target = Path(folder)
+            all_ = seconds(lambda blade=blade, target=target: build(blade, target), runs=3)
+            figure("build: STEP, STL, GLB, PNG, report", name, all_, "s")
 
 
 if __name__ == "__main__":

@@ -1,33 +1,21 @@
 """How long a blade file takes to read: python benchmarks/reading.py
 
-Prints the best of several readings (parse and definition) beside the bare parsing of the same
+Prints the median of several readings (parse and definition) beside the bare parsing of the same
 file by PyYAML's safe loaders, for the bundled blades and for a file of about 250 kB: the NREL
 5 MW with polars, as windIO files carry them.
 """
 
 import tempfile
-import time
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 import yaml
+from figures import figure, seconds
 
 from bladegen.readers import bundled, read
 from bladegen.readers.yaml_file import load_yaml
 
-REPEATS = 5
 ANGLES = 160  # angles of attack a polar: brings the file to about 250 kB
-
-
-def best(function: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Return the shortest of several runs [ms]."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - start)
-    return 1e3 * min(times)
 
 
 def with_polars(path: Path) -> str:
@@ -45,21 +33,20 @@ def with_polars(path: Path) -> str:
 
 
 def main() -> None:
-    """Print one row a file."""
-    fast = getattr(yaml, "CSafeLoader", None)
-    heads = "".join(f"{head:>13}" for head in ("read [ms]", "CSafeLoader", "safe_load"))
-    print(f"{'file':24}{'kB':>8}", heads)
+    """Print each file's figures."""
+    loaders = {"CSafeLoader": getattr(yaml, "CSafeLoader", None), "safe_load": yaml.SafeLoader}
     with tempfile.TemporaryDirectory() as folder:
         large = Path(folder) / "nrel5mw_polars.yaml"
         paths = [Path(read(name).source) for name in bundled()]
         large.write_text(with_polars(paths[-1]), encoding="utf-8")
         for path in (*paths, large):
             content = path.read_bytes()
-            figures = [f"{best(partial(read, path)):.1f}"]
-            for loader, repeats in ((fast, REPEATS), (yaml.SafeLoader, 1)):
-                parse = partial(yaml.load, content, loader)
-                figures.append("-" if loader is None else f"{best(parse, repeats):.1f}")
-            print(f"{path.name:24}{len(content) / 1e3:8.0f}", "".join(f"{f:>13}" for f in figures))
+            spent = 1e3 * seconds(partial(read, path))
+            for name, loader in loaders.items():
+                if loader is not None:
+                    bare = 1e3 * seconds(partial(yaml.load, content, loader), runs=3)
+                    case = f"{path.stem}, {len(content) / 1e3:.0f} kB"
+                    figure("reading", case, spent, "ms", beside=f"parsing, {name}", baseline=bare)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ For each: time, validity, poles or faces, and how far the solid is from the blad
 landmarks that were not used (OCCT's distance, at a few dozen points, for both alike).
 """
 
+import json
 import subprocess
 import sys
 import tempfile
@@ -11,13 +12,15 @@ import time
 from pathlib import Path
 
 import numpy as np
+from figures import figure, seconds
 
 import bladegen as bg
-from bladegen import cad, cad_files, properties
+from bladegen import cad, properties
 
 LOFT_SECTIONS, LOFT_LANDMARKS = 40, 101
 POINTS = 12
 PATIENCE = 90  # s
+LOFT = f"OCCT's loft of {LOFT_SECTIONS} x {LOFT_LANDMARKS}"
 
 
 def distance_mm(blade: bg.Blade, shape: object) -> float:
@@ -54,51 +57,54 @@ def lofted(blade: bg.Blade) -> object:
 
 
 def main() -> None:
-    """Print two rows a blade."""
-    print("blade     way    sections  s      valid  max mm (own)  rms mm  max mm (OCCT)  volume")
+    """Print each blade's figures."""
     for name in bg.bundled():
         blade = bg.Blade.from_definition(bg.read(name))
         wanted = properties.volume(blade)
         cad.solid(blade, sections=20)  # loads OCCT
-        start = time.perf_counter()
-        solid = cad.solid(blade)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "blade.step"
-            cad_files.write_step(solid, path)
-            spent, size = time.perf_counter() - start, path.stat().st_size
-        print(
-            f"{name:9s} net    {len(solid.net.v):8d}  {spent:5.2f}  "
-            f"{cad.is_valid(solid.shape)!s:5s}  {1e3 * solid.deviation.maximum:12.3f}  "
-            f"{1e3 * solid.deviation.rms:6.4f}  {distance_mm(blade, solid.shape):13.3f}  "
-            f"{solid.net.volume() / wanted - 1:+.1e}  {size / 1e6:.1f} MB"
-        )
-        print_loft_or_failure(name)
+            spent = seconds(lambda blade=blade, path=path: bg.export(blade, path), runs=3)
+            size = path.stat().st_size
+        solid = cad.solid(blade)
+        if not cad.is_valid(solid.shape):
+            sys.exit(f"{name}: the solid is not valid")
+        loft = loft_figures(name)
+        case = f"{name}, {len(solid.net.v)} sections"
+        off = abs(solid.net.volume() / wanted - 1)
+        far = distance_mm(blade, solid.shape)
+        for what, value, unit, key in (
+            ("solid, made and written", spent, "s", "s"),
+            ("solid off the blade, OCCT's distance", far, "mm", "mm"),
+            ("solid, volume off by", off, "", "volume"),
+        ):
+            figure(what, case, value, unit, beside=LOFT, baseline=loft.get(key))
+        figure("solid off the blade, largest", case, 1e3 * solid.deviation.maximum, "mm")
+        figure("solid off the blade, RMS", case, 1e3 * solid.deviation.rms, "mm")
+        figure("STEP file", case, size / 1e6, "MB")
 
 
 def print_loft(name: str) -> None:
-    """Loft a blade by OCCT and print its row."""
+    """Loft a blade by OCCT and print its figures as JSON."""
     blade = bg.Blade.from_definition(bg.read(name))
     start = time.perf_counter()
     shape = lofted(blade)
     spent = time.perf_counter() - start
-    off = cad.volume(shape) * 1e-9 / properties.volume(blade) - 1
-    print(
-        f"{name:9s} loft   {LOFT_SECTIONS:8d}  {spent:5.2f}  {cad.is_valid(shape)!s:5s}  "
-        f"{'':12s}  {'':6s}  {distance_mm(blade, shape):13.3f}  {off:+.1e}"
-    )
+    off = abs(cad.volume(shape) * 1e-9 / properties.volume(blade) - 1)
+    print(json.dumps({"s": spent, "mm": distance_mm(blade, shape), "volume": off}))
 
 
-def print_loft_or_failure(name: str) -> None:
-    """Loft in a process of its own, since OCCT's loft may not come back."""
+def loft_figures(name: str) -> dict[str, float]:
+    """Loft in a process of its own, since OCCT's loft may not come back; empty if it does not."""
     try:
         done = subprocess.run(
             [sys.executable, __file__, name], timeout=PATIENCE, check=True, capture_output=True
         )
-        print(done.stdout.decode(), end="", flush=True)
-    except subprocess.TimeoutExpired:
-        print(f"{name:9s} loft   {LOFT_SECTIONS:8d}  not done after {PATIENCE} s", flush=True)
-    except subprocess.CalledProcessError as error:
-        print(f"{name:9s} loft   {LOFT_SECTIONS:8d}  failed: exit {error.returncode}", flush=True)
+        figures: dict[str, float] = json.loads(done.stdout)
+        return figures
+    except (subprocess.TimeoutExpired, subprocess.CalledProcessError) as error:
+        print(f"{name}: OCCT's loft failed: {error}", flush=True)
+        return {}
 
 
 if __name__ == "__main__":

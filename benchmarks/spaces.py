@@ -10,6 +10,7 @@ import time
 from math import comb
 
 import numpy as np
+from figures import figure, seconds
 
 from bladegen import affine, cst, grassmann
 from bladegen.database import baselines
@@ -59,33 +60,37 @@ def main() -> None:
     fits = np.stack([cst.fit(landmarks(xy))[0] for xy in baselines().values()])
     rng = np.random.default_rng(2022)
     points = cst.standardised_shapes(cst.perturbations(fits, 1000, rng))
-    times = []
-    for _ in range(RUNS):
-        start = time.perf_counter()
-        ShapeSpace.fit(points)
-        times.append(time.perf_counter() - start)
-    spent = float(np.median(times))
+    spent = seconds(lambda: ShapeSpace.fit(points), RUNS)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     loop = float(np.median([loop_seconds(points) for _ in range(RUNS)]))
-    print(f"mean and 4 modes of {len(points)} shapes: {spent:.1f} s, {peak:.2f} GB at most")
-    print(f"a plain loop: {loop:.0f} s, {loop / spent:.0f} times as long")
+    case = f"{len(points)} shapes of {points.shape[1]}"
+    figure("mean and 4 modes", case, spent, "s", beside="a plain loop", baseline=loop)
+    figure("peak memory of that", case, peak, "GB")
 
     space = ShapeSpace.fit(points, modes=max(RANKS))
     coefficients = cst.perturbations(fits, 1 + HELD_OUT // 16, np.random.default_rng(99))
     shapes = cst.shapes(coefficients, space.u)
     X, M, b = affine.standardise(shapes)
     t = space.encode(X)
-    print(f"{len(shapes)} held-out shapes: distance of landmarks [chord], median over shapes")
-    print("parameters  modes: RMS  max      CST: RMS  max     variance")
     for r in RANKS:
         kept = np.where(np.arange(t.shape[1]) < r, t, 0.0)
         again = affine.restore(grassmann.align(X, space.decode(kept)), M, b)
         off = [np.linalg.norm(again - shapes, axis=-1)]
         if r % 2 == 0:
             off.append(np.stack([np.abs(by_cst(s, r) - s)[:, 1] for s in shapes]))
-        row = [(np.median(np.sqrt((d**2).mean(1))), np.median(d.max(1))) for d in off]
-        cells = "  ".join(f"{rms:.1e}  {top:.1e}" for rms, top in row)
-        print(f"{r:10d}  {cells:40s}  {100 * space.variance_ratio[:r].sum():.2f} %")
+        rms = [float(np.median(np.sqrt((d**2).mean(1)))) for d in off]
+        top = [float(np.median(d.max(1))) for d in off]
+        for what, values in (("RMS", rms), ("largest", top)):
+            figure(
+                f"modes miss held-out shapes by, {what}",
+                f"{r} parameters",
+                values[0],
+                "chord",
+                beside="CST" if len(values) > 1 else "",
+                baseline=values[1] if len(values) > 1 else None,
+            )
+        variance = 100 * float(space.variance_ratio[:r].sum())
+        figure("variance of so many modes", f"{r} parameters", variance, "%")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 .DEFAULT_GOAL := help
-.PHONY: help demo lint test docs bench clean
+LOCK = --quiet --universal --python-version 3.11 --no-header --no-emit-index-url --no-annotate
+.PHONY: help demo lint test docs bench mutants lock licences sbom audit clean
 
 help: ## show this
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -24,6 +25,28 @@ docs: ## set up and build the documentation into site/; warnings are errors
 bench: ## measure all benchmarks and write docs/measured.md
 	@./scripts/setup.sh test
 	.venv/bin/python benchmarks/table.py
+
+mutants: ## mutate the mathematics and run its tests on each mutant
+	@./scripts/setup.sh dev
+	.venv/bin/mutmut run && .venv/bin/mutmut results
+
+lock: ## pin what is used and what it is developed with, in locks/
+	@./scripts/setup.sh dev
+	.venv/bin/uv pip compile $(LOCK) -o locks/run.txt pyproject.toml
+	.venv/bin/uv pip compile $(LOCK) --all-extras -o locks/dev.txt pyproject.toml
+
+licences: ## list the licences of all that bladegen needs to run, into docs/licences.md
+	@./scripts/setup.sh dev
+	./scripts/licences.sh > docs/licences.md
+
+sbom: ## write a software bill of materials, CycloneDX, into dist/
+	@./scripts/setup.sh dev
+	mkdir -p dist
+	.venv/bin/cyclonedx-py requirements locks/run.txt --pyproject pyproject.toml -o dist/bladegen.cdx.json
+
+audit: ## look known vulnerabilities of all that is pinned up
+	@./scripts/setup.sh dev
+	.venv/bin/pip-audit -r locks/dev.txt --no-deps --disable-pip
 
 clean: ## remove what was made here
 	rm -rf .venv out site build dist .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache

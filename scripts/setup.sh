@@ -74,20 +74,29 @@ python="$(find_python)"
 install_libraries "$python"
 # pip comes last: without it an earlier run was broken off
 [ -x .venv/bin/pip ] || "$python" -m venv --clear .venv
-# What was installed with an extra serves without it too.
+# What was installed with an extra serves without it too, and "dev" holds "test".
 is_done() {
     local stamp
     for stamp in "$@"; do
-        if [ -f "$stamp" ] && [ ! pyproject.toml -nt "$stamp" ]; then return 0; fi
+        if [ -f "$stamp" ] && [ "$stamp" -nt pyproject.toml ] && [ "$stamp" -nt locks/dev.txt ]; then
+            return 0
+        fi
     done
     return 1
 }
 
 stamp=".venv/.bladegen-${extra:-plain}"
-others=()
-[ -n "$extra" ] || others=(.venv/.bladegen-*)
+case "$extra" in
+    "") others=(.venv/.bladegen-*) ;;
+    test) others=(.venv/.bladegen-dev) ;;
+    *) others=() ;;
+esac
 if ! is_done "$stamp" ${others[@]+"${others[@]}"}; then
     printf 'setup: installing bladegen into .venv (about two minutes and 2 GB)\n'
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".${extra:+[$extra]}"
+    # Developers and CI use the versions that were tested; users, and `make demo`, the newest allowed.
+    pins=()
+    [ -z "$extra" ] || pins=(--constraint locks/dev.txt)
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+        ${pins[@]+"${pins[@]}"} --editable ".${extra:+[$extra]}"
     touch "$stamp"
 fi

@@ -90,3 +90,32 @@ def test_one_parameter_families(s, r):
 def test_positive_twist_is_nose_up():
     trailing_edge = np.array([[1.0, 0.0]]) @ affine.twist(np.array(0.1))
     assert trailing_edge[0, 1] < 0
+
+
+@pytest.mark.parametrize("family", [affine.thickness, affine.chord, affine.camber, affine.twist])
+def test_batches_of_maps_of_any_shape_equal_their_parts(family):
+    amounts = np.linspace(0.2, 0.9, 6).reshape(2, 3)
+    batch = family(amounts)
+    assert batch.shape == (2, 3, 2, 2)
+    for i, j in np.ndindex(2, 3):
+        assert_allclose(batch[i, j], family(amounts[i, j]), atol=0)
+
+
+def test_batches_of_shapes_and_stretches_of_any_shape_equal_their_parts():
+    X, M, b = affine.standardise(np.stack([STATIONS, 2.0 * STATIONS[::-1]]))
+    Y, N = affine.cluster(X, M)
+    angle, log_stretch = affine.polar(N)
+    again = affine.from_polar(angle, log_stretch)
+    for i in range(2):
+        for whole, part in zip((Y, N), affine.cluster(X[i], M[i]), strict=True):
+            assert_allclose(whole[i], part, atol=1e-14)
+        assert_allclose(again[i], N[i], atol=1e-12)
+        assert_allclose(affine.restore(X, M, b)[i], affine.restore(X[i], M[i], b[i]), atol=0)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_how_flat_a_shape_may_be_does_not_depend_on_its_size(size):
+    thin = ellipse(1.0) @ np.diag([1.0, 10 * affine.FLAT]) * size
+    affine.standardise(thin)
+    with pytest.raises(GeometryError, match="on a line"):
+        affine.standardise(thin @ np.diag([1.0, 0.02]))

@@ -3,13 +3,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+from scipy.interpolate import Akima1DInterpolator
 
 from bladegen import affine, grassmann
 from bladegen.definition import Distribution
 from bladegen.interpolation import (
+    NOISE,
     GeodesicPath,
     Parameter,
     SectionSpline,
+    _slopes,
     geodesic_path,
     spline_path,
 )
@@ -141,3 +144,82 @@ def test_ripples_of_the_thickness_do_no_harm():
     assert q.min() == parameter.knots[0]
     assert q.max() == parameter.knots[-1]
     assert np.min(np.diff(q)) > -1e-4
+
+
+@given(st.integers(2, 9), SEEDS)
+def test_slopes_of_numbers_are_those_of_scipys_modified_akima(count, seed):
+    rng = np.random.default_rng(seed)
+    knots = np.cumsum(rng.uniform(0.1, 1.0, count))
+    values = np.cumsum(rng.uniform(0.01, 1.0, count) * rng.choice([-1.0, 1.0], count))
+    V = values[:, None, None] * [[0.6], [0.8]]  # along one direction lengths are numbers
+    wanted = Akima1DInterpolator(knots, values, method="makima")(knots, 1)
+    assert_allclose(_slopes(knots, V), wanted[:, None, None] * [[0.6], [0.8]], atol=1e-10)
+
+
+def test_slopes_beside_neighbours_that_differ_by_noise_are_zero():
+    V = np.array([0.0, 1.0, 1.0 + 0.5 * NOISE, 3.0, 2.0])[:, None, None]
+    slopes = _slopes(np.arange(5.0), V)[:, 0, 0]
+    assert_allclose(slopes[1:3], 0.0, atol=0)
+    assert np.all(slopes[[0, 3, 4]] != 0)
+
+
+def test_where_all_secants_vanish_slopes_are_zero():
+    assert_allclose(_slopes(np.arange(4.0), np.ones((4, 3, 2))), 0.0, atol=0)
+
+
+@MAKERS
+def test_paths_hold_their_ends_beyond_the_stations(maker):
+    path, _ = maker(KNOTS + 1.0, X, M)
+    first, last = path(KNOTS[[0, -1]] + 1.0)
+    assert np.all(np.isfinite(path(np.array([1.0 + 1e-9, 2.0 - 1e-9]))))
+    assert_allclose(path(np.array([1.0]))[0], first, atol=0)
+    assert_allclose(path(np.array([2.0]))[0], last, atol=0)
+
+
+@MAKERS
+@pytest.mark.parametrize("k", range(4))
+def test_paths_run_from_each_station_to_the_next(maker, k):
+    path, _ = maker(KNOTS, X, M)
+    start, end = path(KNOTS[[k, k + 1]])
+    whole = grassmann.distance(start, end)
+    between = path(np.linspace(KNOTS[k], KNOTS[k + 1], 9))
+    assert np.all(grassmann.distance(between, start[None]) <= whole + 1e-3)
+    assert_allclose(between[0], start, atol=1e-14)
+    assert_allclose(between[-1], end, atol=1e-14)
+
+
+def test_mirrored_representatives_do_not_mirror_the_spline_path():
+    path, maps_ = spline_path(KNOTS, X, M)
+    assert np.all(np.linalg.det(maps_) * np.linalg.det(M) > 0)
+    for k in (0, -1):
+        assert np.linalg.det(path(KNOTS)[k].T @ X[k]) > 0
+
+
+def test_the_parameter_holds_its_ends_beyond_the_stations():
+    thickness = Distribution(np.array([0.0, 0.5, 1.0]), np.array([1.0, 0.4, 0.2]))
+    for ruling in (None, thickness):
+        parameter = Parameter(np.array([0.1, 0.5, 0.9]), ruling)
+        q = parameter(np.array([0.0, 0.05, 0.1, 0.9, 0.95, 1.0]))
+        assert_allclose(q[:3], parameter.knots[0], atol=0)
+        assert_allclose(q[3:], parameter.knots[-1], atol=0)
+
+
+def test_the_parameter_stays_between_its_stations_where_thickness_overshoots():
+    grid = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+    thickness = Distribution(grid, np.array([0.6, 0.7, 0.2, 0.1, 0.3]))
+    parameter = Parameter(np.array([0.0, 0.5, 1.0]), thickness)
+    eta = np.linspace(0, 1, 201)
+    q = parameter(eta)
+    low, middle, high = parameter.knots
+    assert np.all((q[eta <= 0.5] >= low) & (q[eta <= 0.5] <= middle))
+    assert np.all((q[eta >= 0.5] >= middle) & (q[eta >= 0.5] <= high))
+    assert q[50] == low  # thicker than both ends: at the thick one
+    assert q[150] == middle  # thinner than the middle, which is the thin end here
+
+
+def test_segments_of_equal_thickness_follow_the_span():
+    thickness = Distribution(np.array([0.0, 0.5, 0.6, 1.0]), np.array([0.4, 0.4, 0.4, 0.2]))
+    parameter = Parameter(np.array([0.0, 0.5, 1.0]), thickness)
+    assert_allclose(parameter.knots, [0.0, 0.5, 0.7], atol=1e-15)
+    eta = np.linspace(0.0, 0.5, 11)
+    assert_allclose(parameter(eta), eta, atol=1e-15)

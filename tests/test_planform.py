@@ -4,7 +4,7 @@ from hypothesis import given
 from numpy.testing import assert_allclose
 
 from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis
-from bladegen.planform import Planform, normal_to_axis, normal_to_z
+from bladegen.planform import Planform, normal_to_axis, normal_to_z, placement
 from strategies import definitions
 
 ETA = np.linspace(0.0, 1.0, 33)
@@ -146,3 +146,18 @@ def test_agrees_with_pglw(prebend, sweep, allowed_deg):
     angle = np.linalg.norm(np.cross(*chords), axis=1) / 4.0
     assert np.degrees(angle.max()) < allowed_deg
     assert np.abs(ours - theirs).max() < 2.1 * np.radians(allowed_deg)
+
+
+def test_placing_a_batch_of_any_shape_equals_placing_its_parts():
+    rng = np.random.default_rng(5)
+    shape = (2, 3)
+    chord, twist = rng.uniform(1.0, 2.0, shape), rng.uniform(-1.0, 1.0, shape)
+    offset, axis = rng.normal(size=(*shape, 2)), rng.normal(size=(*shape, 3))
+    frames = np.linalg.qr(rng.normal(size=(*shape, 3, 3))).Q
+    axes, start = placement(chord, twist, offset, axis, frames)
+    assert axes.shape == (*shape, 2, 3)
+    assert start.shape == (*shape, 3)
+    for at in np.ndindex(shape):
+        parts = placement(chord[at], twist[at], offset[at], axis[at], frames[at])
+        assert_allclose(axes[at], parts[0], atol=1e-15)
+        assert_allclose(start[at], parts[1], atol=1e-15)

@@ -14,23 +14,17 @@ import numpy as np
 from bladegen import affine
 from bladegen.arrays import Array, ArrayLike, readonly
 from bladegen.crowding import Crowding
-from bladegen.definition import BladeDefinition
+from bladegen.definition import BladeDefinition, pchip
 from bladegen.deformation import Deformation, Thickening
 from bladegen.edges import MinimumThickness, TrailingEdge
 from bladegen.errors import DefinitionError, Finding
-from bladegen.interpolation import (
-    Parameter,
-    Path,
-    PathMaker,
-    SectionSpline,
-    geodesic_path,
-    spline_path,
-)
+from bladegen.fairing import TOLERANCE
+from bladegen.interpolation import PathMaker, geodesic_path, spline_path
 from bladegen.landmarks import Contour, Spacing, clustered, contour, landmark_parameters
-from bladegen.perturbation import Perturbable
 from bladegen.planform import Planform, SectionPlanes, normal_to_axis
 from bladegen.remarks import disagreeing, opened
-from bladegen.sections import SectionSplines
+from bladegen.shaping import Shaped
+from bladegen.widths import Joining
 
 __all__ = ["PATHS", "Blade"]
 
@@ -38,11 +32,10 @@ PATHS: dict[str, PathMaker] = {"geodesic": geodesic_path, "spline": spline_path}
 RESOLVING_SPANS = 1001  # spans at which bends are looked for
 RESOLVING_LANDMARKS = 40  # landmarks that are watched for bends, about
 MINIMUM_EDGE = MinimumThickness()
-SAME_SHAPE = 1e-10  # of the largest singular value; stations may repeat an airfoil
 
 
 @dataclass(frozen=True, eq=False)
-class Blade(Perturbable):
+class Blade(Shaped):
     """A blade as a function of span.
 
     Parameters
@@ -63,6 +56,9 @@ class Blade(Perturbable):
         Section planes: `planform.normal_to_axis` or `normal_to_z`.
     trailing_edge : callable
         How trailing edges are finished: `edges.MinimumThickness`, `AsGiven` or `Sharp`.
+    edge_width : callable, optional
+        Joins the stations' edge widths over the path's parameter: `definition.pchip`, or None
+        for the widths that the path happens to have.
     contours : tuple of Contour, optional
         The stations' airfoils between their landmarks; without them, splines through the
         landmarks.
@@ -85,6 +81,7 @@ class Blade(Perturbable):
     path: PathMaker = geodesic_path
     planes: SectionPlanes = normal_to_axis
     trailing_edge: TrailingEdge = MINIMUM_EDGE
+    edge_width: Joining | None = pchip
     contours: tuple[Contour, ...] | None = None
     findings: tuple[Finding, ...] = ()
     deformations: tuple[Deformation, ...] = ()
@@ -108,6 +105,7 @@ class Blade(Perturbable):
         planes: SectionPlanes = normal_to_axis,
         trailing_edge: TrailingEdge = MINIMUM_EDGE,
         spacing: Spacing = clustered,
+        fairing: float | None = TOLERANCE,
     ) -> "Blade":
         """Build a blade from its definition.
 
@@ -125,16 +123,24 @@ class Blade(Perturbable):
             Finish of the trailing edges in `sections`; at least 2 mm thick by default.
         spacing : callable
             Spacing of the landmarks along each side.
+        fairing : float, optional
+            Largest distance of an airfoil's given points to its curve, in chords, within which
+            noise of their digits is taken out; None keeps the points.
 
         Raises
         ------
         DefinitionError
-            If `path` is no path or an airfoil is unusable.
+            If `path` is no path.
+        GeometryError
+            If an airfoil or `fairing` is unusable.
         """
         if path not in PATHS:
             raise DefinitionError(f"path: got {path!r}, allowed are {', '.join(PATHS)}")
         u = landmark_parameters(landmarks, spacing)
-        curves = {id(s.airfoil): contour(s.airfoil.coordinates) for s in definition.stations}
+        curves = {
+            id(station.airfoil): contour(station.airfoil.coordinates, fairing=fairing)
+            for station in definition.stations
+        }
         shapes = {key: curve.landmarks(u) for key, curve in curves.items()}
         keys = [id(station.airfoil) for station in definition.stations]
         X, M, b = affine.standardise(np.stack([shapes[key] for key in keys]))
@@ -182,31 +188,6 @@ class Blade(Perturbable):
         """Where sections stand."""
         return Planform(self.definition, self.planes)
 
-    @cached_property
-    def splines(self) -> SectionSplines:
-        """Splines through sections with the blade's landmarks."""
-        return SectionSplines(self.u)
-
-    @cached_property
-    def parameter(self) -> Parameter:
-        """The path's parameter as a function of span."""
-        return Parameter(self.eta, self.definition.relative_thickness)
-
-    @cached_property
-    def _joined(self) -> tuple[Path, SectionSpline]:
-        # A representative's rotation is moved to the tip's M first, so that no result
-        # depends on which representatives `points` holds.
-        knots = self.parameter.knots
-        angle, _ = affine.polar(self.M[-1:])
-        turn = affine.from_polar(angle, np.zeros((1, 2, 2)))
-        path, M = self.path(knots, self.representatives @ turn, turn.mT @ self.M)
-        return path, SectionSpline(knots, M, self.b)
-
-    @property
-    def shape_path(self) -> Path:
-        """The path on the Grassmannian, a function of `parameter`."""
-        return self._joined[0]
-
     def profiles(self, eta: ArrayLike, u: Array | None = None) -> Array:
         """Return unit-chord sections, as the definition gives them.
 
@@ -226,65 +207,26 @@ class Blade(Perturbable):
         """
         spans = _spans(eta)
         flat = spans.reshape(-1)
-        plain, X, M, b = self.shapes(flat)
-        points = affine.restore(X, M, b)
-        A, c = self.splines.normalising(points, self._target(flat, plain, M, b))
+        path = self._path(flat)
+        opening = self._opening(flat, *path)
+        points = opening(affine.restore(*path))
+        wanted = self._target(flat, points)
+        finer = points
         if u is not None:
-            finer = self._between(u) @ plain
-            if self.deformations:
-                finer = finer + self.splines.values(u) @ (X - plain)
-            points = affine.restore(finer, M, b)
-        result = affine.restore(points, A, c)
+            finer = opening(affine.restore(self._between(u) @ path[0], *path[1:]))
+        if self.deformations:
+            plain, M, _ = affine.standardise(points)
+            change = (self._deformed(plain, flat) - plain) @ M
+            finer = finer + (change if u is None else self.splines.values(u) @ change)
+            points = points + change
+        result = affine.restore(finer, *self.splines.normalising(points, wanted))
         return result.reshape(*spans.shape, *result.shape[1:])
-
-    def wanted_thickness(self, eta: Array) -> Array | None:
-        """Return the relative thickness that rules at span fractions (k,), None if none does."""
-        plain, _, M, b = self.shapes(eta)
-        return self._target(eta, plain, M, b)
 
     def relative_thickness(self, eta: ArrayLike) -> Array:
         """Return the relative thickness of the sections at `eta`."""
         spans = _spans(eta)
         profiles = self.profiles(spans.reshape(-1))
         return self.splines.fit(profiles).relative_thickness.reshape(spans.shape)
-
-    @property
-    def points(self) -> Array:
-        """The stations' shapes as points of Gr(n, 2), deformations included, (s, n, 2)."""
-        X = self.representatives
-        for deformation in self.deformations:
-            X = deformation(X, self.eta)
-        return X
-
-    def shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]:
-        """Return the path's points at span fractions (k,), the same deformed, and M and b.
-
-        ``points @ M + b`` are sections before they are brought to unit chord and thickness;
-        bases join over span.
-        """
-        path, spline = self._joined
-        q = self.parameter(eta)
-        plain, (M, b) = path(q), spline(q)
-        X = plain
-        for deformation in self.deformations:
-            X = deformation(X, eta)
-        return plain, X, M, b
-
-    def _target(self, eta: Array, plain: Array, M: Array, b: Array) -> Array | None:
-        """Return the relative thickness to reach; None if nothing rules it.
-
-        Without a distribution, a perturbed blade keeps the thickness it had.
-        """
-        thickness = self.definition.relative_thickness
-        if thickness is not None:
-            target = thickness(eta)
-        elif self.deformations or self.thickenings:
-            target = self.splines.fit(affine.restore(plain, M, b)).relative_thickness
-        else:
-            return None
-        for thickening in self.thickenings:
-            target = target * thickening(eta)
-        return target
 
     def sections(self, eta: ArrayLike, u: Array | None = None) -> Array:
         """Return sections in space, with finished trailing edges.
@@ -307,19 +249,6 @@ class Blade(Perturbable):
         finished = self.trailing_edge(self.profiles(flat, u), self.chord(flat))
         placed = self.planform.place(finished, flat)
         return placed.reshape(*spans.shape, *placed.shape[1:])
-
-    def _between(self, u: Array) -> Array:
-        """Return the linear map (m, n) from a path's landmarks to its points at `u`.
-
-        Paths run in the span of the stations' shapes, so a map that is right for these is
-        right for all that lies between them.
-        """
-        if self.contours is None:
-            return SectionSplines(self.u).values(u)
-        airfoils = np.stack([contour.landmarks(u) for contour in self.contours])
-        finer = (airfoils - self.b[:, None]) @ np.linalg.inv(self.M)
-        columns = np.concatenate([*self.representatives], axis=1)
-        return np.concatenate([*finer], axis=1) @ np.linalg.pinv(columns, rcond=SAME_SHAPE)
 
     def _with(self, **changes: Any) -> "Blade":
         return replace(self, **changes)

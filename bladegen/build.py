@@ -14,10 +14,11 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from bladegen import __version__, cad, cad_files, checks, exporters, mesh
+from bladegen import __version__, cad, cad_files, checks, combs, exporters, mesh
 from bladegen.blade import Blade
 from bladegen.errors import ToleranceError
 from bladegen.files import folder, replacing, safe_stem
+from bladegen.net import Deviation
 from bladegen.rotor import Rotor, write_glb, write_step
 from bladegen.spanwise import spanwise, write_csv
 
@@ -48,7 +49,8 @@ def build(
     target : Path
         The folder; made if it is not there.
     formats : sequence of str
-        Suffixes, with or without their dot.
+        Suffixes, with or without their dot; with "png" come curvature combs of the airfoils,
+        ``<name>.combs.png``.
     options : Options, optional
         How products are made.
     rotor : Rotor, optional
@@ -85,6 +87,7 @@ def build(
     progress("measuring the blade")
     with _timed(seconds, "measuring the blade"):
         report["figures"] = checks.check_blade(blade).figures
+        report["airfoils"] = combs.figures(blade)
     files, miss = [], None
     for path in paths:
         progress(f"writing {path.name}")
@@ -113,6 +116,10 @@ def build(
             with _timed(seconds, "rotor"), replacing(path) as temporary:
                 make(rotor, getattr(products, product), temporary)
             files.append({"name": path.name, "bytes": path.stat().st_size})
+    if any(path.suffix == ".png" for path in paths):
+        progress("drawing curvature combs")
+        with _timed(seconds, "combs"):
+            files.append(_combs(blade, target / f"{stem}.combs.png"))
     table = target / f"{stem}.spanwise.csv"
     columns = spanwise(blade, blade.stations(options.stations))
     with replacing(table) as temporary:
@@ -127,6 +134,13 @@ def build(
     if miss is not None:
         raise miss
     return report
+
+
+def _combs(blade: Blade, path: Path) -> dict[str, Any]:
+    """Draw the airfoils' curvature combs and return the file's row in the report."""
+    with replacing(path) as temporary:
+        combs.draw(blade, temporary)
+    return {"name": path.name, "bytes": path.stat().st_size}
 
 
 def report_path(target: Path, name: str) -> Path:
@@ -150,13 +164,22 @@ def _solid(products: exporters.Products, path: Path, wanted: float) -> dict[str,
         "volume_against_sections": volume / wanted - 1.0,
         "volume_change_on_reading": again["volume_m3"] / before - 1.0,
         "deviation_mm": {
-            "maximum": deviation.maximum * cad.MILLIMETRES,
-            "rms": deviation.rms * cad.MILLIMETRES,
-            "percentile_99": deviation.percentile99 * cad.MILLIMETRES,
-            "at_eta": deviation.eta,
-            "at_u": deviation.u,
-            "samples": deviation.samples,
+            **_deviation(deviation),
+            "on_face": deviation.face,
+            "faces": {face: _deviation(part) for face, part in deviation.faces.items()},
         },
+    }
+
+
+def _deviation(deviation: Deviation) -> dict[str, Any]:
+    """Return a deviation's figures [mm] and where the largest is."""
+    return {
+        "maximum": deviation.maximum * cad.MILLIMETRES,
+        "rms": deviation.rms * cad.MILLIMETRES,
+        "percentile_99": deviation.percentile99 * cad.MILLIMETRES,
+        "at_eta": deviation.eta,
+        "at_u": deviation.u,
+        "samples": deviation.samples,
     }
 
 

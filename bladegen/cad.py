@@ -14,17 +14,16 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.blade import Blade
+from bladegen.ends import measured, rounded
 from bladegen.errors import CadError
-from bladegen.net import DEGREE, Deviation, SurfaceNet, fitted
+from bladegen.net import CLOSED_EDGE, DEGREE, Deviation, SurfaceNet, fitted
+from bladegen.tips import Tip, flat_tip
 
 __all__ = [
     "DEFAULT_TOLERANCE",
     "Solid",
-    "Tip",
     "area",
-    "flat_tip",
     "is_valid",
-    "round_tip",
     "solid",
     "volume",
 ]
@@ -33,7 +32,6 @@ MILLIMETRES = 1000.0
 SEWING = 1e-4  # mm; edges of one net meet to rounding, so this is slack, not repair
 VOLUME_TOLERANCE = 1e-6  # relative; OCCT's default quadrature is off by 3e-4 on these faces
 COARSE_VOLUME = 1e-3  # the same rule, a hundred times faster: to compare a shape with its copy
-CLOSED_EDGE = 1e-7  # m; a trailing edge thinner than this everywhere is sharp
 DEFAULT_TOLERANCE = 0.3e-3  # m
 
 
@@ -50,7 +48,7 @@ class Solid:
     net : SurfaceNet
         The surface of its two sides [m].
     deviation : Deviation
-        Of the net from the blade.
+        Of all faces from the blade.
     name : str
         The blade's name.
     """
@@ -78,40 +76,6 @@ class Solid:
         return cadquery.Workplane(cadquery.Solid(self.shape))
 
 
-Tip = Callable[[SurfaceNet, bool], list[tuple[str, Any]]]
-
-
-def flat_tip(net: SurfaceNet, blunt: bool) -> list[tuple[str, Any]]:
-    """Close the tip by the plane of its last section."""
-    return [("tip", _cap(net, 1.0, blunt))]
-
-
-def round_tip(net: SurfaceNet, blunt: bool) -> list[tuple[str, Any]]:
-    """Close the tip by a cap that leaves both sides tangentially and is round across.
-
-    Opposite poles are joined by cubic Bezier arcs whose inner poles lie 4/3 of half their
-    distance along the blade, the usual arc of 180 degrees: an ellipse to 2 % of its size.
-    """
-    suction, pressure = net.halves()
-    start, end = suction.poles, pressure.poles[::-1]
-    reach = 2.0 / 3.0 * np.linalg.norm(start[:, -1] - end[:, -1], axis=-1, keepdims=True)
-
-    def lifted(side: Array) -> Array:
-        along = side[:, -1] - side[:, -2]
-        unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
-        lift: Array = side[:, -1] + reach * unit
-        return lift
-
-    poles = np.stack([start[:, -1], lifted(start), lifted(end), end[:, -1]], axis=1)
-    surface = _surface(poles, suction.u_knots, _BEZIER)
-    faces = [("tip", _face(surface))]
-    if blunt:
-        straight = np.linspace(poles[0, 0], poles[0, -1], DEGREE + 1)
-        edge = _surface(np.stack([poles[0], straight]), _LINEAR, _BEZIER)
-        faces.append(("tip trailing edge", _face(edge)))
-    return faces
-
-
 def solid(
     blade: Blade,
     *,
@@ -135,7 +99,7 @@ def solid(
     spans : (k,) array, optional
         Sections to begin with (`net.fitted`).
     tip : callable
-        `flat_tip` or `round_tip`.
+        `tips.flat_tip` or `tips.round_tip`.
     progress : callable
         Told what is being done.
 
@@ -145,6 +109,7 @@ def solid(
         If the result is not one valid closed solid.
     """
     net, deviation = fitted(blade, tolerance, sections=sections, spans=spans, progress=progress)
+    deviation = Deviation.of([*deviation.parts, *measured(net, blade, tip)])
     gap = np.linalg.norm(net.poles[0] - net.poles[-1], axis=-1)
     blunt = bool(gap.max() > CLOSED_EDGE)
     if blunt and gap.min() <= CLOSED_EDGE:
@@ -159,7 +124,7 @@ def solid(
     if blunt:
         strip = np.stack([scaled.poles[-1], scaled.poles[0]])
         faces.append(("trailing edge", _face(_surface(strip, _LINEAR, net.v_knots))))
-    faces += [("root", _cap(scaled, 0.0, blunt)), *tip(scaled, blunt)]
+    faces += [("root", _cap(scaled, 0.0, blunt)), *_tip_faces(scaled, blunt, tip)]
     shape, named = _closed(faces, blade.name)
     return Solid(shape, named, net, deviation, blade.name)
 
@@ -258,6 +223,19 @@ def _line(start: Array, end: Array) -> Any:
     from OCP.gp import gp_Pnt
 
     return BRepBuilderAPI_MakeEdge(gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist())).Edge()
+
+
+def _tip_faces(net: SurfaceNet, blunt: bool, tip: Tip) -> list[tuple[str, Any]]:
+    """Make the faces that close the tip: a plane, or the spline through the tip's arcs."""
+    poles = rounded(net, tip)
+    if poles is None:
+        return [("tip", _cap(net, 1.0, blunt))]
+    faces = [("tip", _face(_surface(poles, net.halves()[0].u_knots, _BEZIER)))]
+    if blunt:
+        straight = np.linspace(poles[0, 0], poles[0, -1], DEGREE + 1)
+        edge = _surface(np.stack([poles[0], straight]), _LINEAR, _BEZIER)
+        faces.append(("tip trailing edge", _face(edge)))
+    return faces
 
 
 def _cap(net: SurfaceNet, v: float, blunt: bool) -> Any:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen import affine, cad, cad_files, mesh, properties, smoothness
+from bladegen import affine, cad, cad_files, inflections, mesh, properties, smoothness
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.crossing import crossing_sections
@@ -143,8 +143,9 @@ def check_blade(blade: Blade) -> Check:
         "thickness_error": None
         if thickness is None
         else float(np.abs(curves.relative_thickness - thickness).max()),
+        "airfoils_moved_by_chord": max((c.moved for c in blade.contours or ()), default=0.0),
         **_smoothness(blade),
-        "findings": [str(finding) for finding in (*blade.findings, *_bulges(blade))],
+        "findings": [str(finding) for finding in (*blade.findings, *_wiggles(blade))],
     }
     finished = blade.trailing_edge(profiles, blade.chord(eta))
     problems = [
@@ -163,8 +164,9 @@ def _smoothness(blade: Blade) -> dict[str, Any]:
     }
 
 
-def _bulges(blade: Blade) -> list[Finding]:
-    return [
+def _wiggles(blade: Blade) -> list[Finding]:
+    """Return what the surface does over span that the definition does not."""
+    bulges = [
         Finding(
             f"eta = {eta:.4f}",
             f"the trailing edge's width leaves that of the stations beside it by "
@@ -172,6 +174,15 @@ def _bulges(blade: Blade) -> list[Finding]:
         )
         for eta, excess in smoothness.edge_bulges(blade)
     ]
+    bends = [
+        Finding(
+            f"eta = {found.eta:.4f}",
+            f"{found.quantity} has an inflection over span that the definition has not, "
+            f"{100 * found.depth:.2f} % of the chord deep",
+        )
+        for found in inflections.inflections(blade)
+    ]
+    return bulges + bends
 
 
 def _missed(blade: Blade) -> Array:

@@ -11,8 +11,10 @@ from bladegen import __version__, cli_space
 from bladegen.cli_check import check
 from bladegen.cli_family import family
 from bladegen.cli_options import (
+    FAIRING,
     BladeName,
     EdgeOption,
+    FairingOption,
     Formats,
     Json,
     Landmarks,
@@ -129,6 +131,7 @@ def build(
     planes: PlanesOption = Planes.axis,
     tolerance: Tolerance = "0.3mm",
     trailing_edge: EdgeOption = "2mm",
+    fairing: FairingOption = FAIRING,
     tip: TipOption = TipKind.flat,
     unit: UnitOption = Unit.m,
     step: SchemaOption = StepSchema.ap242,
@@ -141,7 +144,7 @@ def build(
     ] = False,
 ) -> None:
     """Build a blade: a STEP solid, meshes, a picture and a report."""
-    made = read_blade(blade, landmarks, path, planes, trailing_edge)
+    made = read_blade(blade, landmarks, path, planes, trailing_edge, fairing)
     options = build_options(tolerance, stations, tip, unit, step, light)
     whole = None
     if rotor or mirror:
@@ -193,6 +196,7 @@ def perturb(
     planes: PlanesOption = Planes.axis,
     tolerance: Tolerance = "0.3mm",
     trailing_edge: EdgeOption = "2mm",
+    fairing: FairingOption = FAIRING,
     tip: TipOption = TipKind.flat,
     unit: UnitOption = Unit.m,
     step: SchemaOption = StepSchema.ap242,
@@ -206,7 +210,7 @@ def perturb(
 
     t = coordinates(pga or [])
     options = build_options(tolerance, stations, tip, unit, step, light)
-    made = read_blade(blade, landmarks, path, planes, trailing_edge)
+    made = read_blade(blade, landmarks, path, planes, trailing_edge, fairing)
     variant = made.perturbed(
         None if t is None else ShapeSpace.load(space) if space else ShapeSpace.bundled(),
         () if t is None else t,
@@ -234,12 +238,13 @@ def preview(
     path: PathOption = PathKind.geodesic,
     planes: PlanesOption = Planes.axis,
     trailing_edge: EdgeOption = "2mm",
+    fairing: FairingOption = FAIRING,
 ) -> None:
     """Look at a blade in a window, or write a picture of it."""
     from bladegen import preview as view
     from bladegen.files import replacing
 
-    made = read_blade(blade, landmarks, path, planes, trailing_edge)
+    made = read_blade(blade, landmarks, path, planes, trailing_edge, fairing)
     if screenshot is None:
         view.show(made)
         return

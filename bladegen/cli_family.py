@@ -8,8 +8,10 @@ from typing import Annotated, Any
 import typer
 
 from bladegen.cli_options import (
+    FAIRING,
     BladeName,
     EdgeOption,
+    FairingOption,
     Formats,
     LightOption,
     PathKind,
@@ -79,6 +81,7 @@ def family(
     path: PathOption = PathKind.geodesic,
     planes: PlanesOption = Planes.axis,
     trailing_edge: EdgeOption = "2mm",
+    fairing: FairingOption = FAIRING,
     jobs: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
     dask: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead of --jobs.")
@@ -100,7 +103,7 @@ def family(
         raise FamilyError("table: it says what varies and how often; leave --count and --vary out")
     landmarks = 401 if known is None else len(known.u)
     planned = plan(
-        read_blade(blade, landmarks, path, planes, trailing_edge),
+        read_blade(blade, landmarks, path, planes, trailing_edge, fairing),
         known,
         count=100 if count is None else count,
         seed=seed,

@@ -8,6 +8,7 @@ import typer
 __all__ = [
     "BladeName",
     "EdgeOption",
+    "FairingOption",
     "Formats",
     "Json",
     "Landmarks",
@@ -98,15 +99,26 @@ EdgeOption = Annotated[
         help="Least thickness of the trailing edge, such as 2mm; or as given; or sharp.",
     ),
 ]
+FairingOption = Annotated[
+    str,
+    typer.Option(
+        "--fairing",
+        metavar="SHARE|off",
+        help="Take noise out of airfoils, at most that share of the chord off any point; or off.",
+    ),
+]
+FAIRING = "1e-5"
 
 
-def read_blade(source: str, landmarks: int, path: str, planes: Planes, edge: str) -> Any:
+def read_blade(
+    source: str, landmarks: int, path: str, planes: Planes, edge: str, fairing: str = FAIRING
+) -> Any:
     """Read and build a blade as the options say."""
     from bladegen.blade import Blade
     from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
     from bladegen.planform import normal_to_axis, normal_to_z
     from bladegen.readers import read
-    from bladegen.texts import metres
+    from bladegen.texts import chord_share, metres
 
     named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
     return Blade.from_definition(
@@ -115,6 +127,7 @@ def read_blade(source: str, landmarks: int, path: str, planes: Planes, edge: str
         path=path,
         planes={"axis": normal_to_axis, "z": normal_to_z}[planes],
         trailing_edge=named.get(edge) or MinimumThickness(metres(edge, "trailing-edge")),
+        fairing=chord_share(fairing, "fairing"),
     )
 
 
@@ -127,14 +140,15 @@ def build_options(
     light: bool = False,
 ) -> Any:
     """Return how products are made, as the options say."""
-    from bladegen import cad
     from bladegen.exporters import Options
     from bladegen.texts import metres
+    from bladegen.tips import Tip, flat_tip, round_tip
 
+    tips: dict[str, Tip] = {"flat": flat_tip, "round": round_tip}
     return Options(
         tolerance=metres(LIGHT if light else tolerance, "tolerance"),
         step_schema=schema,
         stations=stations,
-        tip={"flat": cad.flat_tip, "round": cad.round_tip}[tip],
+        tip=tips[tip],
         unit=unit,
     )

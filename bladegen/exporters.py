@@ -15,6 +15,7 @@ from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.files import replacing
+from bladegen.tips import Tip, flat_tip
 
 __all__ = [
     "FORMATS",
@@ -45,7 +46,7 @@ class Options:
     stations : int
         Meshes: how many sections.
     tip : callable
-        Solids: `cad.flat_tip` or `cad.round_tip`.
+        Solids and meshes: `tips.flat_tip` or `tips.round_tip`.
     unit : str
         Meshes: "m" or "mm".  STEP and 3MF are always in millimetres, GLB in metres.
     step_schema : str
@@ -59,7 +60,7 @@ class Options:
     tolerance: float = cad.DEFAULT_TOLERANCE
     sections: int | None = None
     stations: int = mesh.SECTIONS
-    tip: cad.Tip = cad.flat_tip
+    tip: Tip = flat_tip
     unit: str = "m"
     step_schema: str = "ap242"
     timestamp: str | None = None
@@ -103,7 +104,7 @@ class Products:
     def mesh(self) -> mesh.TriangleMesh:
         """The triangle mesh."""
         self.progress("meshing")
-        return mesh.from_blade(self.blade, stations=self.options.stations)
+        return mesh.from_blade(self.blade, stations=self.options.stations, tip=self.options.tip)
 
 
 Writer = Callable[[Products, Path], None]

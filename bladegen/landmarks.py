@@ -15,6 +15,7 @@ import numpy as np
 
 from bladegen.arrays import Array, readonly
 from bladegen.errors import GeometryError
+from bladegen.fairing import fair
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
@@ -93,11 +94,14 @@ class Contour:
         The parameter of the leading edge.
     opened : float
         Height of a blunt base that the file pulled to one point, in chords; 0 if none.
+    moved : float
+        Largest distance of a given point to the spline, in chords; 0 if not faired.
     """
 
     spline: "PPoly"
     leading_edge: float
     opened: float = 0.0
+    moved: float = 0.0
 
     def landmarks(self, parameters: Array) -> Array:
         """Return the points (n, 2) at the given fractions of each side's arc length.
@@ -164,16 +168,21 @@ def oriented(coordinates: Array) -> Array:
     return points if area > 0 else points[::-1]
 
 
-def contour(coordinates: Array) -> Contour:
+def contour(coordinates: Array, *, fairing: float | None = None) -> Contour:
     """Fit an airfoil's points by a cubic spline and find its leading edge.
 
     A blunt base that the file pulled to one point at the trailing edge (IEA 15 MW's
     SNL-FFA-W3-500) is no part of the sides: it is taken as the open edge that it is.
+
+    With `fairing`, the spline passes the points by at most that distance in chords, and noise of
+    their digits is left out (`fairing`); without, it passes through them.
     """
-    points, opened = _without_base(oriented(coordinates))
+    given, opened = _without_base(oriented(coordinates))
+    points = given if fairing is None else fair(given, fairing)
     spline = _spline(points)
     middle = 0.5 * (points[0] + points[-1])
-    return Contour(spline, _farthest(spline, middle), opened)
+    moved = float(np.hypot(*(points - given).T).max())
+    return Contour(spline, _farthest(spline, middle), opened, moved)
 
 
 def _without_base(points: Array) -> tuple[Array, float]:

@@ -1,8 +1,9 @@
 """Closed triangle meshes from a structured grid of sections.
 
 A grid of sections (k, n, 3) becomes quads split along their shorter diagonal, a strip that
-closes a blunt trailing edge, and caps zipped between opposite landmarks at root and tip.  The
-mesh is watertight and its triangles face outward.  Lengths are those of the sections, metres.
+closes a blunt trailing edge, and caps zipped between opposite landmarks at root and tip; arcs
+across the tip round it.  The mesh is watertight and its triangles face outward.  Lengths are
+those of the sections, metres.
 """
 
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ import numpy as np
 from bladegen.arrays import Array, Indices, readonly
 from bladegen.blade import Blade
 from bladegen.errors import FileError, GeometryError
+from bladegen.tips import Tip, arcs, flat_tip, on_arcs
 
 __all__ = [
     "TriangleMesh",
@@ -24,6 +26,7 @@ __all__ = [
     "to_trimesh",
 ]
 
+ACROSS = 16  # quads across a rounded tip
 SECTIONS = 300  # 300 x 401 landmarks make 240,000 triangles
 SAME_POINT = 1e-9  # m; landmarks nearer than this are one vertex
 
@@ -66,12 +69,16 @@ class TriangleMesh:
         return np.cross(b - a, c - a)
 
 
-def from_blade(blade: Blade, *, stations: int = SECTIONS) -> TriangleMesh:
-    """Mesh a blade by `stations` sections where it bends."""
-    return surface(blade.sections(blade.stations(stations)))
+def from_blade(blade: Blade, *, stations: int = SECTIONS, tip: Tip = flat_tip) -> TriangleMesh:
+    """Mesh a blade by `stations` sections where it bends, ended by `tip`."""
+    poles = arcs(blade, tip)
+    across = None
+    if poles is not None:
+        across = on_arcs(poles[:, None], np.linspace(0.0, 1.0, ACROSS + 1)[None])
+    return surface(blade.sections(blade.stations(stations)), across)
 
 
-def surface(sections: Array) -> TriangleMesh:
+def surface(sections: Array, across: Array | None = None) -> TriangleMesh:
     """Mesh a grid of sections.
 
     Parameters
@@ -80,6 +87,9 @@ def surface(sections: Array) -> TriangleMesh:
         From root to tip, each from trailing edge over suction side, leading edge and pressure
         side to trailing edge, n odd.  First and last landmark may differ (blunt) or agree
         (sharp), at each section for itself.
+    across : (n // 2 + 1, q, 3) array, optional
+        Rows over the tip from suction to pressure side, q odd, from the trailing edge to the
+        leading edge, where they are one point.  Without them the tip is flat.
 
     Raises
     ------
@@ -95,14 +105,22 @@ def surface(sections: Array) -> TriangleMesh:
     points = sections.reshape(-1, 3)
     grid = np.arange(k * n).reshape(k, n)
     around = np.concatenate([grid, grid[:, :1]], axis=1)  # the last column closes the edge
+    suction, pressure = grid[-1, : n // 2 + 1], grid[-1, : n // 2 - 1 : -1]
+    if across is None:
+        rows = np.stack([suction, pressure], axis=1)
+    else:
+        rows = np.arange(across.shape[0] * across.shape[1]).reshape(across.shape[:2]) + k * n
+        rows[:, 0], rows[:, -1] = suction, pressure
+        points = np.concatenate([points, across.reshape(-1, 3)])
     faces = np.concatenate(
         [
             _quads(points, around[:-1, :-1], around[1:, :-1], around[1:, 1:], around[:-1, 1:]),
             _cap(points, grid[0]),
-            _cap(points, grid[-1])[:, ::-1],
+            _quads(points, rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]),
+            *(() if across is None else (_cap(points, rows[0])[:, ::-1],)),
         ]
     )
-    return TriangleMesh(*_welded(points, faces, grid))
+    return TriangleMesh(*_welded(points, faces, grid, rows))
 
 
 def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
@@ -172,16 +190,16 @@ def _cap(points: Array, row: Indices) -> Indices:
     return _quads(points, pressure[:-1], suction[:-1], suction[1:], pressure[1:])
 
 
-def _welded(points: Array, faces: Indices, grid: Indices) -> tuple[Array, Indices]:
+def _welded(points: Array, faces: Indices, grid: Indices, rows: Indices) -> tuple[Array, Indices]:
     """Join neighbours that coincide, drop collapsed triangles and unused vertices."""
-    faces = _merged(points, grid)[faces]
+    faces = _merged(points, grid, rows)[faces]
     a, b, c = faces.T
     faces = faces[(a != b) & (b != c) & (c != a)]
     used, faces = np.unique(faces, return_inverse=True)
     return points[used], faces.reshape(-1, 3)
 
 
-def _merged(points: Array, grid: Indices) -> Indices:
+def _merged(points: Array, grid: Indices, rows: Indices) -> Indices:
     """Return the vertex that stands for each point: the first of those that coincide.
 
     Sides are joined across the blade at its trailing edge and at its end sections only;
@@ -190,12 +208,14 @@ def _merged(points: Array, grid: Indices) -> Indices:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    ends, half = grid[[0, -1]], grid.shape[1] // 2
+    half = grid.shape[1] // 2
     neighbours = (
         (grid[:, 1:], grid[:, :-1]),
         (grid[1:], grid[:-1]),
         (grid[:, 0], grid[:, -1]),
-        (ends[:, :half], ends[:, :half:-1]),
+        (grid[0, :half], grid[0, :half:-1]),
+        (rows[:, 1:], rows[:, :-1]),
+        (rows[1:], rows[:-1]),
     )
     a, b = (np.concatenate([pair[i].reshape(-1) for pair in neighbours]) for i in range(2))
     same = np.linalg.norm(points[a] - points[b], axis=1) <= SAME_POINT

@@ -6,15 +6,15 @@ sections; sections are added where the surface strays from the blade in between.
 is held against is the blade itself, at spans and landmarks that the net does not use.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from bladegen.arrays import Array, readonly
 from bladegen.blade import Blade
 
-__all__ = ["Deviation", "SurfaceNet", "fit", "fitted"]
+__all__ = ["CLOSED_EDGE", "Deviation", "Offsets", "SurfaceNet", "fit", "fitted"]
 
 DEGREE = 3
 FIRST_SECTIONS = 120
@@ -24,23 +24,70 @@ REFINEMENTS = 14
 MENDINGS = 6  # single sections that may be added where the final measurement is over
 MAXIMUM_SHARE = 0.5  # of the tolerance may be spent between sections at most
 RMS_SHARE = 0.08  # and in the mean; the rest is left to what lies between landmarks
+CLOSED_EDGE = 1e-7  # m; a trailing edge thinner than this everywhere is sharp
 COARSE = (4, 2, 1)  # strides through the blade's landmarks to begin with
 BETWEEN_SHARE = 0.6  # of the tolerance, between landmarks: where more is missed, some are added
+
+
+@dataclass(frozen=True, eq=False)
+class Offsets:
+    """Distances of points of the blade to one face of its solid.
+
+    Parameters
+    ----------
+    face : str
+        The face's name.
+    distances, eta, u : (m,) arrays
+        Distances [m], and where the points are.
+    """
+
+    face: str
+    distances: Array
+    eta: Array
+    u: Array
 
 
 @dataclass(frozen=True)
 class Deviation:
     """How far a surface lies from the blade, at points that it was not made from.
 
-    Lengths in metres; `eta` and `u` say where the largest is, `samples` how many were taken.
+    Lengths in metres; `face`, `eta` and `u` say where the largest is, `samples` how many were
+    taken; `parts` holds them.
     """
 
     maximum: float
     rms: float
     percentile99: float
+    face: str
     eta: float
     u: float
     samples: int
+    parts: tuple[Offsets, ...] = field(default=(), repr=False, compare=False)
+
+    @classmethod
+    def of(cls, parts: Sequence[Offsets]) -> "Deviation":
+        """Return the deviation over some faces, not all of them without points."""
+        distances, eta, u = (
+            np.concatenate([getattr(part, name) for part in parts])
+            for name in ("distances", "eta", "u")
+        )
+        worst = int(np.argmax(distances))
+        counts = np.cumsum([len(part.distances) for part in parts])
+        return cls(
+            maximum=float(distances[worst]),
+            rms=float(np.sqrt(np.mean(distances**2))),
+            percentile99=float(np.percentile(distances, 99)),
+            face=parts[int(np.searchsorted(counts, worst, side="right"))].face,
+            eta=float(eta[worst]),
+            u=float(u[worst]),
+            samples=len(distances),
+            parts=tuple(parts),
+        )
+
+    @property
+    def faces(self) -> dict[str, "Deviation"]:
+        """The deviation of each face by itself."""
+        return {part.face: Deviation.of((part,)) for part in self.parts if len(part.distances)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +111,8 @@ class SurfaceNet:
     v: Array
 
     def __post_init__(self) -> None:
-        for field in ("poles", "u_knots", "v_knots", "u", "v"):
-            object.__setattr__(self, field, readonly(getattr(self, field)))
+        for name in ("poles", "u_knots", "v_knots", "u", "v"):
+            object.__setattr__(self, name, readonly(getattr(self, name)))
 
     def evaluate(self, u: Array, v: Array, nu: int = 0, nv: int = 0) -> Array:
         """Return points, or mixed derivatives, on the grid of `v` and `u`, (kv, ku, 3)."""
@@ -244,20 +291,37 @@ def _landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
 
 
 def deviation(net: SurfaceNet, blade: Blade) -> Deviation:
-    """Measure a net against its blade, midway between its landmarks and off its sections."""
+    """Measure a net against its blade, midway between its landmarks and off its sections.
+
+    The end sections' rims are measured too, and the strip between the trailing edges.
+    """
     starts, widths = net.v[:-1], np.diff(net.v)
-    v = np.sort(np.concatenate([starts + widths / 3.0, starts + 0.75 * widths]))
+    v = np.sort(np.concatenate([starts + widths / 3.0, starts + 0.75 * widths, net.v[[0, -1]]]))
     u = np.concatenate([[0.0], 0.5 * (net.u[1:] + net.u[:-1]), [1.0]])
-    offsets = np.abs(net.offsets(blade.sections(v, u), u, v))
-    worst = np.unravel_index(np.argmax(offsets), offsets.shape)
-    return Deviation(
-        maximum=float(offsets.max()),
-        rms=float(np.sqrt(np.mean(offsets**2))),
-        percentile99=float(np.percentile(offsets, 99)),
-        eta=float(v[worst[0]]),
-        u=float(u[worst[1]]),
-        samples=offsets.size,
-    )
+    points = blade.sections(v, u)
+    offsets = np.abs(net.offsets(points, u, v))
+    eta, places = np.broadcast_arrays(v[:, None], u)
+    front, back = u <= 0.5, u >= 0.5
+    sides = [
+        Offsets(face, offsets[:, some].ravel(), eta[:, some].ravel(), places[:, some].ravel())
+        for face, some in (("suction side", front), ("pressure side", back))
+    ]
+    return Deviation.of([*sides, _strip(net, points[:, [0, -1]], v)])
+
+
+def _strip(net: SurfaceNet, ends: Array, v: Array) -> Offsets:
+    """Measure the strip between the trailing edges (k, 2, 3) at spans v (k,), where it is open."""
+    ours, along = net.evaluate(_ENDS, v), net.evaluate(_ENDS, v, nv=1)
+    share = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+    across = np.stack([1.0 - share, share], axis=-1)  # of the suction side's end, the pressure's
+    normal = np.cross(across @ along, (ours[:, 1] - ours[:, 0])[:, None])
+    length = np.linalg.norm(normal, axis=-1)
+    missed = np.abs(np.sum(across @ (ends - ours) * normal, axis=-1))
+    wide = np.linalg.norm(ours[:, 1] - ours[:, 0], axis=-1) > CLOSED_EDGE
+    distances = missed[wide] / length[wide]
+    eta = np.broadcast_to(v[wide, None], distances.shape)
+    u = np.broadcast_to(np.round(share), distances.shape)
+    return Offsets("trailing edge", distances.ravel(), eta.ravel(), u.ravel())
 
 
 _ENDS = np.array([0.0, 1.0])

@@ -261,6 +261,16 @@ class SectionCurves:
         axes = np.stack([along, np.stack([-along[:, 1], along[:, 0]], axis=-1)], axis=-1)
         return SectionCurves(self.u, self.points @ axes, self.slopes @ axes)
 
+    @property
+    def edge_width(self) -> Array:
+        """Distance from the pressure to the suction side's end normal to the chord line, (k,)."""
+        along = self.trailing_edge - self.leading_edge
+        gap = self.points[:, 0] - self.points[:, -1]
+        width: Array = (along[:, 0] * gap[:, 1] - along[:, 1] * gap[:, 0]) / self._reach(
+            self.leading_edge
+        )
+        return width
+
     @cached_property
     def thickness(self) -> Array:
         """Largest distance between the sides normal to the chord line, (k,)."""

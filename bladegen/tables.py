@@ -86,6 +86,7 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
         ["length", f"{figures['length_m']:.3f} m"],
         ["volume by its sections", f"{figures['volume_m3']:.4f} m3"],
         ["stations missed by", f"{figures['stations_missed_by_chord']:.1e} chord"],
+        ["airfoils off their points by", f"{figures['airfoils_moved_by_chord']:.1e} chord"],
         ["chord off its spline by", f"{figures['chord_error_relative']:.1e}"],
         ["twist off its spline by", f"{figures['twist_error_deg']:.1e} deg"],
     ]
@@ -101,7 +102,10 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
         closed = "closed" if solid["closed"] else "open"
         rows += [
             ["solid", f"{solid['solids']} {sound}, {closed}, {solid['faces']} faces"],
-            ["solid off the blade by", f"{deviation['maximum']:.3f} mm at most"],
+            [
+                "solid off the blade by",
+                f"{deviation['maximum']:.3f} mm at most, on the {deviation['on_face']}",
+            ],
             ["", f"{deviation['rms']:.4f} mm RMS"],
             ["solid's volume off by", f"{solid['volume_against_sections']:.1e}"],
             ["volume change on reading", f"{solid['volume_change_on_reading']:.1e}"],

@@ -11,7 +11,7 @@ from bladegen.designs import Design, tabulated
 from bladegen.errors import BladegenError, DesignError, FileError
 from bladegen.pga import ShapeSpace
 
-__all__ = ["coordinates", "factor_bounds", "factor_table", "metres", "span_window"]
+__all__ = ["chord_share", "coordinates", "factor_bounds", "factor_table", "metres", "span_window"]
 
 MANIFEST = ("index", "name", "valid", "reason", "attempts", "seed", "volume_m3", "surface_m2")
 FILES = ("_file", "_sha256", "_problem")
@@ -37,6 +37,27 @@ def metres(text: str, field: str) -> float:
             "such as 0.3mm"
         )
     return float(f"{float(match[1]) * _METRES[match[2]]:.15g}")
+
+
+def chord_share(text: str, field: str) -> float | None:
+    """Return a length in chords, None for "off".
+
+    Raises
+    ------
+    BladegenError
+        If it is neither.
+
+    >>> chord_share("2e-5", "fairing")
+    2e-05
+    """
+    if text == "off":
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise BladegenError(
+            f"{field}: got {text!r}, must be a share of the chord, such as 1e-5, or off"
+        ) from None
 
 
 def factor_bounds(texts: Sequence[str]) -> dict[str, tuple[float, float]]:

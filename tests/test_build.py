@@ -26,6 +26,7 @@ def test_the_default_files_are_made(folder):
     suffixes = {".step", ".stl", ".glb", ".png", ".json", ".csv"}
     assert {path.suffix for path in folder.iterdir()} == suffixes
     assert all(path.name.startswith("nrel5mw.") for path in folder.iterdir())
+    assert (folder / "nrel5mw.combs.png").stat().st_size > 10_000
 
 
 def test_the_report_meets_the_design(folder):
@@ -40,6 +41,11 @@ def test_the_report_meets_the_design(folder):
     assert solid["closed"]
     assert solid["deviation_mm"]["maximum"] < 0.3
     assert solid["deviation_mm"]["rms"] < 0.03
+    faces = solid["deviation_mm"]["faces"]
+    assert list(faces) == solid["face_names"]
+    assert max(one["maximum"] for one in faces.values()) == solid["deviation_mm"]["maximum"]
+    assert 0 < figures["airfoils_moved_by_chord"] <= 1.0000001e-5
+    assert {one["airfoil"] for one in report["airfoils"]} >= {"Cylinder1", "DU21_A17"}
     assert abs(solid["volume_against_sections"]) < 1e-5
     assert abs(solid["volume_change_on_reading"]) < 1e-6
     for mesh in report["meshes"].values():

@@ -11,6 +11,7 @@ from bladegen.definition import Distribution
 from bladegen.edges import AsGiven, Sharp
 from bladegen.errors import CadError
 from bladegen.readers import bundled, read
+from bladegen.tips import round_tip
 
 FACES = ["suction side", "pressure side", "trailing edge", "root", "tip"]
 
@@ -98,7 +99,7 @@ def test_ends_are_planes(solid):
 
 
 def test_a_round_tip_leaves_one_valid_solid_and_adds_volume(blade, solid):
-    rounded = cad.solid(blade, sections=len(solid.net.v), tip=cad.round_tip)
+    rounded = cad.solid(blade, sections=len(solid.net.v), tip=round_tip)
     figures = solid_figures(rounded.shape, quick=True)
     flat = solid_figures(cad.solid(blade, sections=len(solid.net.v)).shape, quick=True)
     assert figures["one_solid"]

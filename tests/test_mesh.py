@@ -10,6 +10,7 @@ from bladegen.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import GeometryError
 from bladegen.landmarks import landmarks
 from bladegen.readers import bundled, read
+from bladegen.tips import flat_tip, on_arcs, round_tip
 from strategies import SEEDS, definitions, ellipse
 
 
@@ -41,10 +42,13 @@ def least_height(made):
     return np.min(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / longest)
 
 
-@given(definitions(), st.sampled_from([AsGiven(), Sharp(), MinimumThickness(0.01)]))
-def test_blades_of_any_edge_are_closed_and_face_outward(definition, edge):
+EDGES = AsGiven(), Sharp(), MinimumThickness(0.01)
+
+
+@given(definitions(), st.sampled_from(EDGES), st.sampled_from([flat_tip, round_tip]))
+def test_blades_of_any_edge_and_tip_are_closed_and_face_outward(definition, edge, tip):
     blade = Blade.from_definition(definition, landmarks=51, trailing_edge=edge)
-    made = mesh.from_blade(blade, stations=30)
+    made = mesh.from_blade(blade, stations=30, tip=tip)
     assert edges_are_shared_by_two(made.faces)
     assert euler_characteristic(made) == 2
     assert made.volume > 0
@@ -132,9 +136,19 @@ def test_landmarks_that_coincide_leave_no_degenerate_triangle(spoil, gap):
 
 @pytest.mark.parametrize("name", bundled())
 @pytest.mark.parametrize("edge", [AsGiven(), Sharp(), MinimumThickness(0.002)])
-def test_blades_have_no_degenerate_triangle(name, edge):
+@pytest.mark.parametrize("tip", [flat_tip, round_tip])
+def test_blades_have_no_degenerate_triangle(name, edge, tip):
     blade = Blade.from_definition(read(name), trailing_edge=edge)
-    assert least_height(mesh.from_blade(blade)) > mesh.SAME_POINT
+    assert least_height(mesh.from_blade(blade, tip=tip)) > mesh.SAME_POINT
+
+
+def test_a_rounded_tip_adds_the_volume_of_half_an_ellipsoid():
+    sections = cylinder(n=801, k=3, thickness=0.3)
+    suction, pressure = sections[-1, :401], sections[-1, :399:-1]
+    poles = round_tip(suction, pressure, *2 * [np.broadcast_to([0.0, 0.0, 1.0], (401, 3))])
+    across = on_arcs(poles[:, None], np.linspace(0, 1, 65)[None])
+    added = mesh.surface(sections, across).volume - mesh.surface(sections).volume
+    assert_allclose(added, 2 / 3 * np.pi * 0.5 * 0.15 * 0.15, rtol=0.03)
 
 
 def test_the_default_is_a_quarter_of_a_million_triangles():

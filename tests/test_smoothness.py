@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.smoothness import creases, edge_bulges, edge_widths
+from bladegen.smoothness import creases
 
 
 def blade(name, path, **options):
@@ -41,15 +41,3 @@ def test_a_kink_in_the_planform_is_measured():
     # half a chord turns by d(twist)/dz out of its plane: the slope of a ruled surface
     reach = made.chord(place) * 0.8 / made.length
     assert 0.3 * reach < angle[2] < 1.5 * reach
-
-
-def test_edges_that_bulge_between_stations_are_found():
-    assert edge_bulges(blade("dtu10mw", "geodesic")) == []
-    made = blade("iea15mw", "spline")
-    bulges = edge_bulges(made)
-    assert bulges
-    eta, excess = bulges[0]
-    k = int(np.searchsorted(made.eta, eta)) - 1
-    ends = edge_widths(made, made.eta[k : k + 2])
-    width = edge_widths(made, np.array([eta]))
-    assert_allclose(max(ends.min() - width, width - ends.max()), excess)

@@ -1,0 +1,58 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+import bladegen as bg
+from bladegen import combs
+from bladegen.cli_options import Planes, read_blade
+from bladegen.errors import BladegenError, ExportError
+from bladegen.landmarks import contour
+from strategies import ellipse
+
+
+@given(st.floats(0.2, 1.0))
+def test_an_ellipse_has_its_curvature(thickness):
+    teeth = combs.comb(contour(ellipse(thickness, 801)))
+    x, y = (teeth.points - [0.5, 0.0]).T
+    a, b = 0.5, 0.5 * thickness
+    wanted = a * b / (a**2 * (y / b) ** 2 + b**2 * (x / a) ** 2) ** 1.5
+    inner = np.abs(x) < 0.45
+    assert_allclose(teeth.curvature[inner], wanted[inner], rtol=1e-3)
+    outward = np.sum(teeth.normal * (teeth.points - [0.5, 0.0]), axis=1)
+    assert np.all(outward > 0)
+    assert_allclose(np.linalg.norm(teeth.normal, axis=1), 1.0)
+
+
+def test_a_picture_and_figures_of_every_airfoil(tmp_path):
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=51)
+    names = {station.airfoil.name for station in blade.definition.stations}
+    figures = combs.figures(blade)
+    assert {one["airfoil"] for one in figures} == names
+    assert all(one["moved_by_chord"] <= 1.0000001e-5 for one in figures)
+    assert all(one["roughness_faired"] < one["roughness_given"] for one in figures)
+    combs.draw(blade, tmp_path / "combs.png")
+    assert (tmp_path / "combs.png").read_bytes()[:4] == b"\x89PNG"
+    with pytest.raises(ExportError, match="suffix"):
+        combs.draw(blade, tmp_path / "combs.txt")
+
+
+def test_an_unfaired_blade_is_as_rough_as_given():
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=51, fairing=None)
+    for one in combs.figures(blade):
+        assert one["roughness_faired"] == one["roughness_given"]
+        assert one["moved_by_chord"] == 0.0
+
+
+def test_fairing_is_asked_for_by_its_tolerance_or_off():
+    def moved(fairing):
+        made = read_blade("iea15mw", 51, "geodesic", Planes.axis, "2mm", fairing)
+        return max(curve.moved for curve in made.contours)
+
+    assert moved("off") == 0.0
+    assert moved("1e-6") <= 1.0000001e-6 < moved("2e-5") <= 2.0000001e-5
+    with pytest.raises(BladegenError, match="fairing: got 'no', must be a share of the chord"):
+        moved("no")
+    with pytest.raises(BladegenError, match=r"fairing: got 0\.5 chord, allowed is"):
+        moved("0.5")

@@ -1,0 +1,70 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+import bladegen as bg
+from bladegen.landmarks import landmark_parameters, landmarks
+from bladegen.sections import SectionSplines
+from bladegen.smoothness import edge_bulges, edge_widths
+from bladegen.widths import Wedges
+from strategies import airfoils, definitions
+
+U = landmark_parameters(401)
+SPLINES = SectionSplines(U)
+PATHS = pytest.mark.parametrize("path", ["geodesic", "spline"])
+
+
+@given(airfoils(), st.floats(0.0, 0.06))
+def test_a_wedge_gives_the_width_and_keeps_chord_thickness_and_nose(xy, width):
+    profile = landmarks(xy, 401)[None]
+    A, c = SPLINES.normalising(profile, None)
+    profile = profile @ A + c[:, None]
+    before = SPLINES.fit(profile)
+    opened = profile + Wedges.to(before, np.array([width]))(profile)
+    after = SPLINES.fit(opened)
+    assert_allclose(after.edge_width, width, atol=1e-14)
+    assert_allclose(after.trailing_edge, before.trailing_edge, atol=1e-14)
+    assert_allclose(after.leading_edge, before.leading_edge, atol=1e-9)
+    assert_allclose(after.relative_thickness, before.relative_thickness, atol=1e-9)
+    ahead = profile[0, :, 0] < 0.5
+    assert_allclose(opened[0, ahead], profile[0, ahead], atol=0)
+
+
+@PATHS
+@given(definitions())
+def test_widths_stay_between_those_of_the_stations(path, definition):
+    blade = bg.Blade.from_definition(definition, landmarks=101, path=path)
+    ends = blade.splines.fit(blade.profiles(blade.eta)).edge_width
+    for k, (start, end) in enumerate(zip(blade.eta[:-1], blade.eta[1:], strict=True)):
+        between = blade.splines.fit(blade.profiles(np.linspace(start, end, 9))).edge_width
+        assert between.min() > min(ends[k : k + 2]) - 1e-9
+        assert between.max() < max(ends[k : k + 2]) + 1e-9
+
+
+@PATHS
+@given(definitions())
+def test_stations_stay_as_the_path_has_them(path, definition):
+    blade = bg.Blade.from_definition(definition, landmarks=101, path=path)
+    as_blended = replace(blade, edge_width=None)
+    assert_allclose(blade.profiles(blade.eta), as_blended.profiles(blade.eta), atol=1e-12)
+
+
+@PATHS
+@pytest.mark.parametrize("name", bg.bundled())
+def test_no_bundled_blade_bulges(name, path):
+    assert edge_bulges(bg.Blade.from_definition(bg.read(name), path=path)) == []
+
+
+def test_edges_that_bulge_between_stations_are_found():
+    made = bg.Blade.from_definition(bg.read("iea15mw"), path="spline")
+    made = replace(made, edge_width=None)
+    bulges = edge_bulges(made)
+    eta, excess = bulges[0]
+    k = int(np.searchsorted(made.eta, eta)) - 1
+    ends = edge_widths(made, made.eta[k : k + 2])
+    width = edge_widths(made, np.array([eta]))
+    assert_allclose(max(ends.min() - width, width - ends.max()), excess)

@@ -9,7 +9,7 @@ import platform
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from bladegen import __version__, cad, cad_files, checks, combs, exporters, mesh
 from bladegen.blade import Blade
 from bladegen.errors import ToleranceError
 from bladegen.files import folder, replacing, safe_stem
+from bladegen.grid_quality import grid_figures
 from bladegen.net import Deviation
 from bladegen.rotor import Rotor, write_glb, write_step
 from bladegen.spanwise import spanwise, write_csv
@@ -25,7 +26,7 @@ from bladegen.spanwise import spanwise, write_csv
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
 
 DEFAULT_FORMATS = ("step", "stl", "glb", "png")
-LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk")
+LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk", "h5py")
 SPANWISE_ROWS = 60  # in the report; the CSV file holds all
 FROM_FILE = ("solids", "faces", "valid", "closed", "area_m2", "bounds_m")
 _SOLIDS, _MESHES = tuple(cad_files.READERS), (".stl", ".glb", ".ply", ".obj", ".3mf")
@@ -75,7 +76,7 @@ def build(
         exporters.format_of(path)
     options = options or exporters.Options()
     products = exporters.Products(blade, options, progress)
-    seconds: dict[str, float] = {}
+    ledger = _Ledger(progress)
     report: dict[str, Any] = {
         "blade": blade.name,
         "source": Path(blade.definition.source).name,
@@ -85,50 +86,37 @@ def build(
         "changes": list(blade.changes),
     }
     progress("measuring the blade")
-    with _timed(seconds, "measuring the blade"):
+    with ledger.timed("measuring the blade"):
         report["figures"] = checks.check_blade(blade).figures
         report["airfoils"] = combs.figures(blade)
-    files, miss = [], None
+    miss = None
     for path in paths:
-        progress(f"writing {path.name}")
         made = path
-        with _timed(seconds, path.suffix.lstrip(".")):
+        with ledger.timed(path.suffix.lstrip(".")):
+            progress(f"writing {path.name}")
             try:
                 exporters.write(products, path)
             except ToleranceError as error:
                 miss, made = error, exporters.aside(path)
-        files.append({"name": made.name, "bytes": made.stat().st_size})
-        with _timed(seconds, "measuring the files"):
-            if path.suffix in _SOLIDS:
-                progress("reading the solid again")
-                report["solid"] = _solid(products, made, report["figures"]["volume_m3"])
-            elif path.suffix in _MESHES:
-                report.setdefault("meshes", {})[path.suffix.lstrip(".")] = checks.mesh_figures(
-                    mesh.read(made)
-                )
+        ledger.note(made)
+        with ledger.timed("measuring the files"):
+            _measure(report, products, path.suffix, made)
     if rotor is not None:
         report["rotor"] = asdict(rotor)
-        for path, make, product in (
-            (target / f"{stem}.rotor.step", write_step, "solid"),
-            (target / f"{stem}.rotor.glb", write_glb, "mesh"),
-        ):
-            progress(f"writing {path.name}")
-            with _timed(seconds, "rotor"), replacing(path) as temporary:
-                make(rotor, getattr(products, product), temporary)
-            files.append({"name": path.name, "bytes": path.stat().st_size})
+        with ledger.writing(target / f"{stem}.rotor.step", "rotor") as temporary:
+            write_step(rotor, products.solid, temporary)
+        with ledger.writing(target / f"{stem}.rotor.glb", "rotor") as temporary:
+            write_glb(rotor, products.mesh, temporary)
     if any(path.suffix == ".png" for path in paths):
-        progress("drawing curvature combs")
-        with _timed(seconds, "combs"):
-            files.append(_combs(blade, target / f"{stem}.combs.png"))
-    table = target / f"{stem}.spanwise.csv"
+        with ledger.writing(target / f"{stem}.combs.png", "combs") as temporary:
+            combs.draw(blade, temporary)
     columns = spanwise(blade, blade.stations(options.stations))
-    with replacing(table) as temporary:
+    with ledger.writing(target / f"{stem}.spanwise.csv", "spanwise") as temporary:
         write_csv(columns, temporary)
-    files.append({"name": table.name, "bytes": table.stat().st_size})
     some = slice(None, None, max(1, options.stations // SPANWISE_ROWS))
     report["spanwise"] = {name: values[some].tolist() for name, values in columns.items()}
-    report["files"] = files
-    report["seconds"] = {stage: round(spent, 3) for stage, spent in seconds.items()}
+    report["files"] = ledger.files
+    report["seconds"] = {stage: round(spent, 3) for stage, spent in ledger.seconds.items()}
     with replacing(report_path(target, blade.name)) as temporary:
         temporary.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
     if miss is not None:
@@ -136,11 +124,47 @@ def build(
     return report
 
 
-def _combs(blade: Blade, path: Path) -> dict[str, Any]:
-    """Draw the airfoils' curvature combs and return the file's row in the report."""
-    with replacing(path) as temporary:
-        combs.draw(blade, temporary)
-    return {"name": path.name, "bytes": path.stat().st_size}
+@dataclass(frozen=True)
+class _Ledger:
+    """What was written, and what time each stage took [s]."""
+
+    progress: Callable[[str], None]
+    files: list[dict[str, Any]] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Add the time spent within to a stage's."""
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            spent = time.perf_counter() - start
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
+
+    @contextmanager
+    def writing(self, path: Path, stage: str) -> Iterator[Path]:
+        """Write a file under a temporary name within, and note it once it is whole."""
+        self.progress(f"writing {path.name}")
+        with self.timed(stage), replacing(path) as temporary:
+            yield temporary
+        self.note(path)
+
+    def note(self, path: Path) -> None:
+        """Add a file that lies on the disk."""
+        self.files.append({"name": path.name, "bytes": path.stat().st_size})
+
+
+def _measure(report: dict[str, Any], products: exporters.Products, suffix: str, path: Path) -> None:
+    """Add what a file's format gives to measure: a solid, a grid or triangles."""
+    if suffix in _SOLIDS:
+        products.progress("reading the solid again")
+        report["solid"] = _solid(products, path, report["figures"]["volume_m3"])
+    elif suffix in exporters.GRIDS:
+        report.setdefault("grid", grid_figures(products.grid))
+    elif suffix in _MESHES:
+        figures = checks.mesh_figures(mesh.read(path))
+        report.setdefault("meshes", {})[suffix.lstrip(".")] = figures
 
 
 def report_path(target: Path, name: str) -> Path:
@@ -194,6 +218,7 @@ def _settings(blade: Blade, options: exporters.Options) -> dict[str, Any]:
         "mesh_stations": options.stations,
         "tip": options.tip.__name__,
         "mesh_unit": options.unit,
+        "grid": asdict(options.spacing),
     }
 
 
@@ -205,12 +230,3 @@ def _versions() -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return found
-
-
-@contextmanager
-def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
-    start = time.perf_counter()
-    try:
-        yield
-    finally:
-        seconds[stage] = seconds.get(stage, 0.0) + time.perf_counter() - start

@@ -16,6 +16,9 @@ from bladegen.cli_options import (
     EdgeOption,
     FairingOption,
     Formats,
+    GridAlong,
+    GridAround,
+    GridEdge,
     Json,
     Landmarks,
     LightOption,
@@ -24,6 +27,8 @@ from bladegen.cli_options import (
     Planes,
     PlanesOption,
     SchemaOption,
+    SideSpacing,
+    SpanSpacing,
     Stations,
     StepSchema,
     TipKind,
@@ -136,6 +141,13 @@ def build(
     unit: UnitOption = Unit.m,
     step: SchemaOption = StepSchema.ap242,
     light: LightOption = False,
+    grid_around: GridAround = 257,
+    grid_along: GridAlong = 129,
+    grid_edge: GridEdge = 8,
+    le_spacing: SideSpacing = 1e-3,
+    te_spacing: SideSpacing = 1e-3,
+    tip_spacing: SpanSpacing = 2e-4,
+    root_spacing: SpanSpacing = 0.01,
     rotor: Annotated[
         bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
     ] = False,
@@ -143,9 +155,18 @@ def build(
         bool, typer.Option("--mirror", help="A rotor that turns anticlockwise seen from upwind.")
     ] = False,
 ) -> None:
-    """Build a blade: a STEP solid, meshes, a picture and a report."""
+    """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
+    spacing = {
+        "around": grid_around,
+        "along": grid_along,
+        "edge": grid_edge,
+        "leading_edge": le_spacing,
+        "trailing_edge": te_spacing,
+        "tip": tip_spacing,
+        "root": root_spacing,
+    }
+    options = build_options(tolerance, stations, tip, unit, step, light, spacing)
     made = read_blade(blade, landmarks, path, planes, trailing_edge, fairing)
-    options = build_options(tolerance, stations, tip, unit, step, light)
     whole = None
     if rotor or mirror:
         from bladegen.rotor import rotor_of

@@ -10,6 +10,9 @@ __all__ = [
     "EdgeOption",
     "FairingOption",
     "Formats",
+    "GridAlong",
+    "GridAround",
+    "GridEdge",
     "Json",
     "Landmarks",
     "LightOption",
@@ -18,6 +21,8 @@ __all__ = [
     "Planes",
     "PlanesOption",
     "SchemaOption",
+    "SideSpacing",
+    "SpanSpacing",
     "Stations",
     "StepSchema",
     "TipKind",
@@ -73,16 +78,27 @@ BladeName = Annotated[
 ]
 Formats = Annotated[
     list[str] | None,
-    typer.Option("--format", help="step iges brep stl glb png ply obj 3mf vtp; may be repeated."),
+    typer.Option(
+        "--format",
+        help="step iges brep stl glb png ply obj 3mf vtp p3d fmt cgns vtu sections.csv; may be "
+        "repeated.",
+    ),
 ]
 Tolerance = Annotated[
     str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
 ]
 Stations = Annotated[int, typer.Option(help="Sections of the meshes.")]
 TipOption = Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")]
-UnitOption = Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ and VTP files.")]
+UnitOption = Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ, VTP, PLOT3D and VTU files.")]
 SchemaOption = Annotated[StepSchema, typer.Option("--step", help="Schema of STEP files.")]
 LightOption = Annotated[bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")]
+GridAround = Annotated[int, typer.Option(help="Grids: points around a section, odd.")]
+GridAlong = Annotated[int, typer.Option(help="Grids: points from root to tip.")]
+GridEdge = Annotated[int, typer.Option(help="Grids: cells across the trailing edge, even.")]
+SideSpacing = Annotated[
+    float, typer.Option(help="Grids: cell at that edge over the side's length, about the chord.")
+]
+SpanSpacing = Annotated[float, typer.Option(help="Grids: cell at that end over the length.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
 PathOption = Annotated[
@@ -138,9 +154,11 @@ def build_options(
     unit: Unit,
     schema: StepSchema,
     light: bool = False,
+    spacing: dict[str, Any] | None = None,
 ) -> Any:
     """Return how products are made, as the options say."""
     from bladegen.exporters import Options
+    from bladegen.grid import Spacing
     from bladegen.texts import metres
     from bladegen.tips import Tip, flat_tip, round_tip
 
@@ -151,4 +169,5 @@ def build_options(
         stations=stations,
         tip=tips[tip],
         unit=unit,
+        spacing=Spacing(**(spacing or {})),
     )

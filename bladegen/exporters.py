@@ -1,7 +1,8 @@
 """A blade to a file, by suffix: one row a format in `FORMATS`.
 
 A new exporter needs a function that writes a product to a path, and a row that says from
-which product: the solid, the mesh, or the blade itself.  Files appear whole or not at all.
+which product: the solid, the mesh, the grid, or the blade itself.  Files appear whole or not
+at all.
 """
 
 from collections.abc import Callable
@@ -10,7 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from bladegen import cad, cad_files, mesh, preview
+from bladegen import cad, cad_files, grid, grid_files, mesh, preview
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, ToleranceError
@@ -19,6 +20,7 @@ from bladegen.tips import Tip, flat_tip
 
 __all__ = [
     "FORMATS",
+    "GRIDS",
     "UNITS",
     "Format",
     "Options",
@@ -46,15 +48,18 @@ class Options:
     stations : int
         Meshes: how many sections.
     tip : callable
-        Solids and meshes: `tips.flat_tip` or `tips.round_tip`.
+        Solids, meshes and grids: `tips.flat_tip` or `tips.round_tip`.
     unit : str
-        Meshes: "m" or "mm".  STEP and 3MF are always in millimetres, GLB in metres.
+        Meshes, PLOT3D and VTK: "m" or "mm".  STEP and 3MF are always in millimetres, GLB and
+        CGNS in metres.
     step_schema : str
         STEP: "ap242" or "ap214".
     timestamp : str, optional
         STEP: the time in the header, ISO 8601, instead of now.
     spans : (k,) array, optional
         Solids: sections to begin with, such as those of a blade that is alike.
+    spacing : Spacing
+        Grids: how many points, and cell sizes where it matters.
     """
 
     tolerance: float = cad.DEFAULT_TOLERANCE
@@ -65,6 +70,7 @@ class Options:
     step_schema: str = "ap242"
     timestamp: str | None = None
     spans: Array | None = None
+    spacing: grid.Spacing = field(default_factory=grid.Spacing)
 
     def __post_init__(self) -> None:
         if self.unit not in UNITS:
@@ -105,6 +111,12 @@ class Products:
         """The triangle mesh."""
         self.progress("meshing")
         return mesh.from_blade(self.blade, stations=self.options.stations, tip=self.options.tip)
+
+    @cached_property
+    def grid(self) -> grid.Grid:
+        """The structured grid."""
+        self.progress("making the grid")
+        return grid.from_blade(self.blade, self.options.spacing, self.options.tip)
 
 
 Writer = Callable[[Products, Path], None]
@@ -168,6 +180,28 @@ def _write_vtp(products: Products, path: Path) -> None:
     preview.write_vtp(products.mesh, path, scale=UNITS[products.options.unit])
 
 
+def _write_p3d(products: Products, path: Path) -> None:
+    grid_files.write_plot3d(products.grid, path, scale=UNITS[products.options.unit])
+
+
+def _write_fmt(products: Products, path: Path) -> None:
+    grid_files.write_plot3d_text(products.grid, path, scale=UNITS[products.options.unit])
+
+
+def _write_cgns(products: Products, path: Path) -> None:
+    grid_files.write_cgns(products.grid, path)
+
+
+def _write_vtu(products: Products, path: Path) -> None:
+    grid_files.write_vtu(products.grid, path, scale=UNITS[products.options.unit])
+
+
+def _write_csv(products: Products, path: Path) -> None:
+    blade = products.blade
+    eta = blade.stations(products.options.stations)
+    grid_files.write_sections(eta, blade.u, blade.sections(eta), path)
+
+
 def _write_png(products: Products, path: Path) -> None:
     products.progress("rendering")
     preview.picture(products.blade, path)
@@ -185,11 +219,17 @@ FORMATS = {
     ".obj": Format("Wavefront OBJ, triangles, m (or mm)", _write_obj),
     ".3mf": Format("3MF, triangles for printing, mm", _write_3mf),
     ".vtp": Format("VTK poly data, triangles for ParaView, m (or mm)", _write_vtp),
+    ".p3d": Format("PLOT3D multi-block grid, Fortran unformatted, m (or mm)", _write_p3d),
+    ".fmt": Format("PLOT3D multi-block grid, text, m (or mm)", _write_fmt),
+    ".cgns": Format("CGNS structured grid with connectivity and families, m", _write_cgns),
+    ".vtu": Format("VTK unstructured quadrilaterals of the grid, m (or mm)", _write_vtu),
+    ".csv": Format("sections as a table: eta, landmark, u, x, y, z, m", _write_csv),
     ".png": Format("picture of the blade", _write_png),
 }
 
 
 SOLID_WRITERS = (_write_step, _write_iges, _write_brep)
+GRIDS = (".p3d", ".fmt", ".cgns", ".vtu")
 
 
 def format_of(path: Path) -> Format:

@@ -113,6 +113,16 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
     for suffix, figures_ in report.get("meshes", {}).items():
         sound = "watertight" if figures_["watertight"] else "not watertight"
         rows.append([f"{suffix} mesh", f"{figures_['triangles']} triangles, {sound}"])
+    if "grid" in report:
+        grid = report["grid"]
+        gap = grid["interface_gap_m"]
+        matches = "match point to point" if gap == 0 else f"are {gap:.1e} m apart"
+        rows += [
+            ["grid", f"{grid['cells']} cells in {grid['blocks']} blocks, which {matches}"],
+            ["grid's worst skewness", f"{grid['worst_skewness']:.2f} of 1"],
+            ["grid's largest stretching", f"{grid['largest_stretching']:.2f} from cell to cell"],
+            ["grid's smallest cell", f"{grid['smallest_cell_m2'] * 1e6:.3g} mm2"],
+        ]
     rows.append(["time", f"{sum(report['seconds'].values()):.1f} s"])
     return rows
 

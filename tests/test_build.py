@@ -6,6 +6,7 @@ import bladegen as bg
 from bladegen.build import build, report_path
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.exporters import Options
+from bladegen.tables import report_rows
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +59,21 @@ def test_the_report_meets_the_design(folder):
     assert set(report["seconds"]) >= {"step", "stl", "glb", "png"}
     sizes = {entry["name"]: entry["bytes"] for entry in report["files"]}
     assert sizes == {name: (folder / name).stat().st_size for name in sizes}
+
+
+def test_grids_are_measured_in_the_report(tmp_path):
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
+    report = build(blade, tmp_path, formats=["p3d", "cgns", "sections.csv"])
+    names = {path.name for path in tmp_path.iterdir()}
+    assert {"nrel5mw.p3d", "nrel5mw.cgns", "nrel5mw.sections.csv"} < names
+    grid = report["grid"]
+    assert grid["blocks"] == len(grid["by_block"]) == 5
+    assert grid["cells"] > 30_000
+    assert grid["interface_gap_m"] == 0
+    assert grid["worst_skewness"] < 0.7
+    assert report["settings"]["grid"]["around"] == 257
+    rows = dict(report_rows(report))
+    assert rows["grid"] == f"{grid['cells']} cells in 5 blocks, which match point to point"
 
 
 def test_a_missed_tolerance_is_said_and_the_rest_is_made(blade, tmp_path, monkeypatch):

@@ -64,6 +64,23 @@ def test_build_makes_what_is_asked_for(tmp_path):
     assert report["settings"]["mesh_unit"] == "mm"
 
 
+def test_build_makes_grids_as_asked_for(tmp_path):
+    result = run(
+        "build", "nrel5mw", "-o", tmp_path, "--format", "p3d", "--landmarks", 101, "--tip", "round",
+        "--grid-around", 65, "--grid-along", 33, "--grid-edge", 6, "--le-spacing", 0.004,
+        "--te-spacing", 0.003, "--tip-spacing", 0.001, "--root-spacing", 0.02,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    report = json.loads((tmp_path / "nrel5mw.report.json").read_text())
+    assert report["settings"]["grid"] == {
+        "around": 65, "along": 33, "edge": 6, "leading_edge": 0.004, "trailing_edge": 0.003,
+        "tip": 0.001, "root": 0.02,
+    }  # fmt: skip
+    assert report["grid"]["cells"] == 32 * (64 + 6) + 64 + 4 * 30
+    refused = run("build", "nrel5mw", "-o", tmp_path, "--format", "p3d", "--le-spacing", 0.5)
+    assert "leading-edge spacing: got 0.5, allowed is" in str(refused.exception)
+
+
 def test_build_that_misses_its_tolerance_ends_with_1(tmp_path, monkeypatch):
     monkeypatch.setattr("bladegen.net.MAX_SECTIONS", 20)
     monkeypatch.setattr("bladegen.net.FIRST_SECTIONS", 20)

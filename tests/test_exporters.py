@@ -5,6 +5,8 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen import cad, cad_files, exporters, mesh
 from bladegen.errors import ExportError, ToleranceError
+from bladegen.grid import Spacing
+from bladegen.tips import round_tip
 
 MESHES = [".stl", ".ply", ".glb", ".obj", ".3mf", ".vtp"]
 
@@ -62,6 +64,34 @@ def test_the_same_blade_gives_the_same_bytes(blade, suffix, tmp_path):
         bg.export(blade, tmp_path / f"{name}{suffix}", stations=20).read_bytes() for name in "ab"
     )
     assert first == second
+
+
+@pytest.mark.parametrize("suffix", exporters.GRIDS)
+def test_grids_by_suffix(blade, suffix, tmp_path):
+    spacing = Spacing(around=33, along=9, edge=4, leading_edge=0.02, trailing_edge=0.02, root=0.1)
+    first, second = (
+        bg.export(blade, tmp_path / f"{name}{suffix}", spacing=spacing).read_bytes()
+        for name in "ab"
+    )
+    assert len(first) > 10_000
+    assert first == second
+
+
+def test_sections_by_suffix(blade, tmp_path):
+    path = bg.export(blade, tmp_path / "blade.sections.csv", stations=20)
+    table = np.genfromtxt(path, delimiter=",", names=True)
+    sections = blade.sections(blade.stations(20)).reshape(-1, 3)
+    assert np.array_equal(np.stack([table[f"{c}_m"] for c in "xyz"], axis=1), sections)
+
+
+def test_a_round_tip_is_on_meshes_and_grids_alike(blade):
+    spacing = Spacing(around=33, along=9, edge=4, leading_edge=0.02, trailing_edge=0.02, root=0.1)
+    options = exporters.Options(stations=20, tip=round_tip, spacing=spacing)
+    products = exporters.Products(blade, options)
+    tops = [products.mesh.vertices[:, 2].max()]
+    tops.append(max(block.points[..., 2].max() for block in products.grid.blocks))
+    assert min(tops) > 1.001 * blade.length
+    assert_allclose(*tops, rtol=1e-4)
 
 
 def test_step_by_suffix(blade, tmp_path):

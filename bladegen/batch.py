@@ -2,12 +2,12 @@
 
 What does not change from variant to variant is prepared once: the shapes at the spans, the
 modes carried there by parallel transport, and the splines of both.  A variant's section is
-then linear in these features (`features`), with coefficients from its 2 x 2 matrices,
+then linear in these features, F a span, with coefficients from its 2 x 2 matrices,
 
     (X cos S + D sin S / S) M A + ...,   D = w sum_j t_j V_j,   S^2 = D^T D,
 
-so that all variants of a section are one matrix product.  The result is what `Blade.perturbed`
-gives, to rounding.  Arrays are (k, b, ...), spans first, until sections come out as (b, k, ...).
+and a compiled loop (`kernels`) takes it from there.  The result is what `Blade.perturbed` gives,
+to rounding.  Arrays are (k, b, ...), spans first, until sections come out as (b, k, ...).
 """
 
 from dataclasses import dataclass, fields
@@ -16,19 +16,17 @@ from functools import cached_property
 import numpy as np
 
 from bladegen import affine, grassmann, polygons
-from bladegen.arrays import Array, ArrayLike, Indices, Mask, readonly
+from bladegen.arrays import Array, ArrayLike, Indices, readonly
 from bladegen.blade import Blade
 from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange, Window, faded
-from bladegen.features import Features
+from bladegen.edges import AsGiven, MinimumThickness, TrailingEdge
 from bladegen.pga import ShapeSpace
 from bladegen.planform import placement
-from bladegen.sections import resizing
 
 __all__ = ["FAULTS", "LOST_THICKNESS", "Batch", "SectionBatch"]
 
 
-CHUNK = 16  # variants handled at once: what is worked on stays in the processor's cache
 LOST_THICKNESS = 0.2  # of the thickness before, which a deformation must leave
 TURNED_EDGE = -1e-6  # chord; an edge that is open the wrong way by more has turned over
 SOUND, CROSSING, THIN, TURNED = range(4)
@@ -113,12 +111,18 @@ class SectionBatch:
         return grassmann.transport(self.space.modes, self.space.mean, X[:, None])
 
     @cached_property
-    def features(self) -> Features:
-        """The shapes, the carried modes, and a constant."""
+    def features(self) -> Array:
+        """The shapes, the carried modes, and a constant, (k, F, n)."""
         X, V = self._shapes[1], self._carried
         k, n, _ = X.shape
         rows = [np.moveaxis(X, -1, 1), np.moveaxis(V, -1, 2).reshape(k, -1, n), np.ones((k, 1, n))]
-        return Features(self.blade.u, np.concatenate(rows, axis=1))
+        return np.concatenate(rows, axis=1)
+
+    @cached_property
+    def _slopes(self) -> Array:
+        """The slopes of the features' splines, (k, n, F)."""
+        slopes = self.blade.splines.values(self.blade.u, 1) @ self.features.mT
+        return np.ascontiguousarray(slopes)
 
     @cached_property
     def _gram(self) -> Array:
@@ -149,7 +153,10 @@ class SectionBatch:
         count = len(t)
         weighted = t * self._weight[:, None, None]
         pairs = (weighted[..., :, None] * weighted[..., None, :]).reshape(k, count, r * r)
-        cosine, sinc = grassmann.exp_factors((pairs @ self._gram).reshape(k, count, 2, 2))
+        squares = np.zeros((k, count, 4))
+        for j in range(r * r):  # a matrix product would round by how many variants there are
+            squares += pairs[..., j, None] * self._gram[:, None, j]
+        cosine, sinc = grassmann.exp_factors(squares.reshape(k, count, 2, 2))
         result = np.empty((k, count, 2 * r + 3, 2))
         result[:, :, :2] = cosine @ M[:, None]
         result[:, :, 2:-1] = (weighted[..., None, None] * (sinc @ M[:, None])[:, :, None]).reshape(
@@ -179,38 +186,26 @@ class SectionBatch:
         measured : bool
             Measure areas, centroids and so on.
         """
-        count = len(t)
-        chunks = [slice(first, first + CHUNK) for first in range(0, count, CHUNK)]
-        target = self._target(change, count)
-        parts = [self._sized(t[chunk], target[:, chunk]) for chunk in chunks]
-        raw, A, c, own, unsure, unproved = (
-            np.concatenate(part, axis=1) for part in zip(*parts, strict=True)
-        )
-        self._settle(raw, target, A, c, own, unsure)
-        faults = self._faults(raw, own, unproved)
-
-        to_space, chord, twist = self._placement(change, count)
-        unit = raw @ A
-        unit[:, :, -1] += c
-        sections: Array = np.empty((count, len(self.eta), len(self.blade.u), 3), dtype=dtype)
-        measures = np.empty((count, len(self.eta), len(polygons.MEASURES)))
-        homogeneous = np.ones((min(CHUNK, count), *sections.shape[1:]))
-        for chunk in chunks:
-            profiles = self.features.points(unit[:, chunk])
-            flat = profiles.reshape(-1, *profiles.shape[2:])
-            finished = self.blade.trailing_edge(flat, chord[chunk].reshape(-1))
-            points = homogeneous[: len(profiles)]
-            points[..., :2] = finished.reshape(profiles.shape)
-            if measured:
-                measures[chunk] = polygons.measure(points[..., :2] * chord[chunk][..., None, None])
-            np.matmul(points, to_space[chunk], out=sections[chunk], casting="same_kind")
+        shape = len(t), len(self.eta)
+        raw, target = self.coefficients(t), self._target(change, len(t))
+        to_space, chord, twist = self._placement(change, len(t))
+        sections: Array = np.empty((*shape, len(self.blade.u), 3), dtype=dtype)
+        measures = np.empty((*shape, len(polygons.MEASURES)) if measured else (0, 0, 0))
+        thickness = _least_thickness(self.blade.trailing_edge)
+        if thickness is not None:
+            faults = self._made(raw, target, chord, thickness, to_space, sections, measures)
+        else:
+            plain = np.broadcast_to(np.eye(3), to_space.shape)
+            profiles = np.empty(sections.shape)
+            faults = self._made(raw, target, chord, 0.0, plain, profiles, measures[:0])
+            for i in range(len(t)):
+                profiles[i, ..., :2] = self.blade.trailing_edge(profiles[i, ..., :2], chord[i])
+                np.matmul(profiles[i], to_space[i], out=sections[i], casting="same_kind")
+                if measured:
+                    scale = chord[i, :, None, None]
+                    measures[i] = polygons.measure(profiles[i, ..., :2] * scale)
         return Batch(
-            sections,
-            chord,
-            twist,
-            np.array(target.T),
-            np.array(faults.T),
-            measures if measured else None,
+            sections, chord, twist, target.T.copy(), faults.T, measures if measured else None
         )
 
     def faults(self, t: Array, change: AffineChange) -> tuple[Indices, Array]:
@@ -218,51 +213,51 @@ class SectionBatch:
 
         Both (b, k), as `evaluate` gives them, without the sections.
         """
-        raw = self.coefficients(t)
-        measures = self.features.measure(raw)
-        own = measures.thickness / measures.chord
-        faults = self._faults(raw, own, ~self.features.proved_sound(raw))
-        return faults.T, self._target(change, len(t)).T
+        raw, target = self.coefficients(t), self._target(change, len(t))
+        chord, to_space, measures = np.empty((0, 0)), np.empty((0, 0, 0, 0)), np.empty((0, 0, 0))
+        faults = self._made(raw, target, chord, 0.0, to_space, to_space, measures)
+        return faults.T, target.T
 
     def _target(self, change: AffineChange, count: int) -> Array:
         """Return the relative thickness to reach, (k, b)."""
         thickening = faded(np.ones(1), self._weight[:, None], _column(change.thickening).T)
-        return np.broadcast_to(self._ruling[:, None] * thickening, (len(self.eta), count))
+        target: Array = self._ruling[:, None] * thickening
+        return np.broadcast_to(target, (len(self.eta), count))
 
-    def _sized(self, t: Array, target: Array) -> tuple[Array, Array, Array, Array, Mask, Mask]:
-        """Return coefficients, the maps to size, own thicknesses, and what is still open."""
-        raw = self.coefficients(t)
-        measures = self.features.measure(raw)
-        A, c, passed = resizing(
-            measures.noses,
-            measures.noses[0],
-            measures.trailing_edge,
-            measures.thickness,
-            target,
+    def _made(
+        self,
+        raw: Array,
+        target: Array,
+        chord: Array,
+        edge: float,
+        to_space: Array,
+        sections: Array,
+        measures: Array,
+    ) -> Indices:
+        """Fill sections and measures that have a length; return what is wrong, (k, b)."""
+        from bladegen import kernels
+
+        own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
+        given = [self.blade.u, self.features, self._slopes, raw, target, own, known]
+        given += [chord, to_space, sections, measures]
+        # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise
+        kernels.made(
+            *(np.require(values, requirements=["C", "W"]) for values in given), float(edge)
         )
-        own = measures.thickness / measures.chord
-        return raw, A, c, own, measures.unsure | passed, ~self.features.proved_sound(raw)
+        return self._faults(raw, own, known)
 
-    def _settle(
-        self, raw: Array, target: Array, A: Array, c: Array, own: Array, unsure: Mask
-    ) -> None:
-        """Bring the sections to size that the quick measures are unsure of."""
-        k, b = np.nonzero(unsure)
-        if k.size:
-            points = self.features.values[k].mT @ raw[k, b]
-            A[k, b], c[k, b] = self.blade.splines.normalising(points, target[k, b])
-            own[k, b] = self.blade.splines.fit(points).relative_thickness
-
-    def _faults(self, raw: Array, own: Array, unproved: Mask) -> Indices:
+    def _faults(self, raw: Array, own: Array, known: Indices) -> Indices:
         """Return what is wrong with sections (k, b): a place in `FAULTS`."""
+        from bladegen import kernels
+
         faults: Indices = np.full(own.shape, SOUND)
-        ends = self.features.values[..., 0] - self.features.values[..., -1]
+        ends = self.features[..., 0] - self.features[..., -1]
         gap = (ends[:, None, None] @ raw)[:, :, 0, 1]
         faults[gap < TURNED_EDGE] = TURNED
         faults[~(own > LOST_THICKNESS * self.before[:, None])] = THIN
-        k, b = np.nonzero(unproved)
-        points = self.features.values[k].mT @ raw[k, b]
-        crossing = crossing_sections(points)
+        faults[known == kernels.CROSSING] = CROSSING
+        k, b = np.nonzero(known == kernels.OPEN)
+        crossing = crossing_sections(self.features[k].mT @ raw[k, b])
         faults[k[crossing], b[crossing]] = CROSSING
         return faults
 
@@ -289,15 +284,27 @@ class SectionBatch:
     def _axis(self, prebend_scale: Array) -> tuple[Array, Array]:
         """Return reference axes (b or 1, k, 3) and section frames (b or 1, k, 3, 3)."""
         values, inverse = np.unique(prebend_scale, return_inverse=True)
-        axes, frames = [], []
-        for value in values.tolist():  # frames are carried along each axis by itself
-            definition = AffineChange(prebend_scale=value).applied(
-                self.blade.definition, self.window
-            )
-            axes.append(definition.axis(self.eta))
-            frames.append(self.blade.planes(definition.axis)(self.eta))
+        standing = [self._own_axis if value == 1.0 else self._bent(value) for value in values]
+        axes, frames = (np.stack(parts) for parts in zip(*standing, strict=True))
         index = np.atleast_1d(inverse)
-        return np.stack(axes)[index], np.stack(frames)[index]
+        return axes[index], frames[index]
+
+    @cached_property
+    def _own_axis(self) -> tuple[Array, Array]:
+        return self._bent(1.0)
+
+    def _bent(self, prebend_scale: float) -> tuple[Array, Array]:
+        """Return the axis and the frames, which are carried along it, of one prebend."""
+        change = AffineChange(prebend_scale=float(prebend_scale))
+        axis = change.applied(self.blade.definition, self.window).axis
+        return axis(self.eta), self.blade.planes(axis)(self.eta)
+
+
+def _least_thickness(edge: TrailingEdge) -> float | None:
+    """Return the least thickness [m] that a policy asks for; None if it is of another kind."""
+    if type(edge) is MinimumThickness:
+        return edge.thickness
+    return 0.0 if type(edge) is AsGiven else None
 
 
 def _column(value: ArrayLike) -> Array:

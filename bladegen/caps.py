@@ -96,6 +96,8 @@ def cap(blade: Blade, tip: Tip, outline: Array, u: Array, edge: int) -> Cap:
     rim[0] = outline
     core[0], core[-1] = rim[-1, : corner + 1], rim[-1, : n - corner - 2 : -1]
     core[:, -1] = rim[-1, corner : n - corner]
+    if np.array_equal(outline[0], outline[-1]):
+        rim[:, [0, -1]] = core[:, :1] = outline[0]  # a sharp edge is one point, bit for bit
     return Cap(rim, core, _landmark(rim_e, rim_w), _landmark(core_e, core_w))
 
 

@@ -140,6 +140,7 @@ def run(
             place.make_sections(family.eta, family.blade.u, len(family), order.dtype)
             if order.suffixes:
                 folder(place.blades)
+            family.block(np.arange(0), dtype=FLOAT_TYPES[order.dtype])  # compiles, for all workers
             if client is not None:
                 made = _on_cluster(order, left, client)
             elif jobs > 1 and len(left) > 1:

@@ -68,6 +68,7 @@ def grid_figures(grid: Grid) -> dict[str, Any]:
         "points": sum(block.points[..., 0].size for block in grid.blocks),
         "cells": sum(figures["cells"] for figures in blocks.values()),
         "smallest_cell_m2": min(figures["smallest_cell_m2"] for figures in blocks.values()),
+        "folded_cells": sum(figures["folded_cells"] for figures in blocks.values()),
         "worst_skewness": max(figures["worst_skewness"] for figures in blocks.values()),
         "largest_stretching": max(figures["largest_stretching"] for figures in blocks.values()),
         "leading_edge_cell_of_side": leading,
@@ -81,11 +82,13 @@ def grid_figures(grid: Grid) -> dict[str, Any]:
 
 def _block_figures(block: Block) -> dict[str, Any]:
     ni, nj, _ = block.points.shape
+    skewed = skewness(block.points)
     return {
         "points": [ni, nj],
         "cells": (ni - 1) * (nj - 1),
         "smallest_cell_m2": float(areas(block.points).min()),
-        "worst_skewness": float(skewness(block.points).max()),
+        "folded_cells": int(np.count_nonzero(skewed > 1.0)),
+        "worst_skewness": float(skewed.max()),
         "largest_stretching": stretching(block.points),
     }
 

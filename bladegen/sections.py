@@ -18,7 +18,7 @@ from bladegen.arrays import Array, Indices, Mask
 
 __all__ = ["SectionCurves", "SectionSplines", "resizing"]
 
-PARAMETER_TOLERANCE = 1e-6  # of u, before the last step; a maximum is off by its square
+PARAMETER_TOLERANCE = 1e-8  # of u, before the last step; places are off by a thousand squares of it
 ITERATIONS = 60  # bisection alone needs 40
 SETTLED = 1e-13  # change of a map that ends its iteration
 SAME_NOSE = 3  # landmarks; nearer peaks are one nose

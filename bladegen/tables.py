@@ -120,6 +120,7 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
         rows += [
             ["grid", f"{grid['cells']} cells in {grid['blocks']} blocks, which {matches}"],
             ["grid's worst skewness", f"{grid['worst_skewness']:.2f} of 1"],
+            ["grid's folded cells", str(grid["folded_cells"])],
             ["grid's largest stretching", f"{grid['largest_stretching']:.2f} from cell to cell"],
             ["grid's smallest cell", f"{grid['smallest_cell_m2'] * 1e6:.3g} mm2"],
         ]

@@ -110,7 +110,9 @@ def test_cells_are_no_more_skewed_or_stretched_than_documented(grid):
     for block in grid.blocks:
         limit = 0.9 if block.name == "trailing edge" else 0.65
         assert skewness(block.points).max() < limit
-    assert grid_figures(grid)["largest_stretching"] < 1.3
+    figures = grid_figures(grid)
+    assert figures["largest_stretching"] < 1.3
+    assert figures["folded_cells"] == 0
 
 
 def test_spacings_are_as_asked_for(blade, grid):
@@ -167,6 +169,7 @@ def test_any_blade_makes_a_sound_grid(definition, tip, edge, spacing, finish):
     for block in made.blocks[-2:]:
         sound = block.points[:, 1:-1] if block.name == "tip rim" else block.points[:, 1:]
         assert corner_angles(sound).min() > 0
+    assert max(skewness(block.points).max() for block in made.blocks) <= 1
     figures = grid_figures(made)
     assert figures["interface_gap_m"] == 0
     assert figures["cells"] == sum((b.eta[1:, 1:]).size for b in made.blocks)

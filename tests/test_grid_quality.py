@@ -1,7 +1,8 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from bladegen.grid_quality import areas, corner_angles, skewness, stretching
+from bladegen.grid import Block, Grid, Interface
+from bladegen.grid_quality import areas, corner_angles, grid_figures, skewness, stretching
 
 
 def cells(x, y, shear=0.0):
@@ -35,3 +36,19 @@ def test_collapsed_and_folded_cells_are_told():
 def test_stretching_is_the_worst_ratio_either_way():
     assert_allclose(stretching(cells([0, 1, 3, 4], [0, 1, 2.5])), 2)
     assert stretching(cells([0, 1], [0, 1])) == 1
+
+
+def test_figures_tell_folded_cells_and_blocks_that_do_not_match():
+    left, right = cells([0, 1], [0, 1, 2]), cells([0, 1], [2, 3, 4])
+    left[1, 1] = [1, 2.5, 1]
+    right[0, 0] = [0, 2.25, 1]
+    blocks = [
+        Block(name, name, points, points[..., 0], points[..., 1])
+        for name, points in (("left", left), ("right", right))
+    ]
+    joint = Interface(0, 1, (0, 2), (1, 2), (0, 0), (1, 0), (1, 2))
+    figures = grid_figures(Grid("two", tuple(blocks), (joint,)))
+    assert figures["folded_cells"] == figures["by_block"]["left"]["folded_cells"] == 1
+    assert figures["worst_skewness"] > 1
+    assert figures["interface_gap_m"] == 0.25
+    assert figures["cells"] == 4

@@ -1,0 +1,25 @@
+"""Functions compiled by Numba, which is loaded with this module: so import it late.
+
+Numba compiles a function when it is first called and keeps the result on the disk, in the
+package's folder or the user's cache.  What it keeps it makes anew when the file of the function
+that was called has changed, but not when a constant or a function from elsewhere has: who
+changes `sizes`, or a tolerance that it shares, saves `kernels` too.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from numba import njit
+
+__all__ = ["compiled"]
+
+REORDERED = {"contract", "reassoc"}  # sums may be taken in another order; NaN stays NaN
+
+
+def compiled(function: Callable[..., Any]) -> Any:
+    """Compile a function, to run without the interpreter's lock; keep the result if possible."""
+    options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": REORDERED}
+    try:
+        return njit(cache=True, **options)(function)
+    except RuntimeError:  # neither the package's folder nor the user's can be written
+        return njit(**options)(function)

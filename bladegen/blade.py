@@ -7,6 +7,7 @@ value; everything about it follows from its fields.  Metres and radians, blade f
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -94,6 +95,17 @@ class Blade(Shaped):
 
     def __getstate__(self) -> dict[str, Any]:
         return {field.name: getattr(self, field.name) for field in fields(self)}  # no caches
+
+    def __repr__(self) -> str:
+        return (
+            f"<Blade {self.name}: {self.length:.1f} m, {len(self.eta)} stations, "
+            f"{len(self.u)} landmarks>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Return table and picture for notebooks, by a module that the core does not import."""
+        shown: str = import_module("bladegen.notebook").blade_html(self)
+        return shown
 
     @classmethod
     def from_definition(

@@ -39,6 +39,8 @@ from bladegen.cli_options import (
     build_options,
     read_blade,
 )
+from bladegen.cli_perturb import NO_CHANGES, Changes, perturbing
+from bladegen.cli_view import KEYS, plot, preview
 from bladegen.errors import BladegenError
 from bladegen.terminal import (
     print_figures,
@@ -62,6 +64,8 @@ app = typer.Typer(
 app.add_typer(cli_space.app, name="space")
 app.command()(check)
 app.command()(family)
+app.command(epilog=KEYS)(preview)
+app.command()(plot)
 
 
 def main() -> None:
@@ -176,40 +180,11 @@ def build(
 
 
 @app.command()
+@perturbing
 def perturb(
     blade: BladeName,
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
-    pga: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="t1,t2,...[@ETA]",
-            help="Coordinates along the modes [rad]; with @ETA repeated, knots over span.",
-        ),
-    ] = None,
-    space: Annotated[
-        Path | None, typer.Option(help="A space made by `space build`; the bundled one if not.")
-    ] = None,
-    thickness: Annotated[float, typer.Option(help="Thickness times this; 1 changes nothing.")] = 1,
-    camber: Annotated[
-        float, typer.Option(help="diag(2 - s, s), chord against thickness; 1 changes nothing.")
-    ] = 1,
-    chord: Annotated[
-        float, typer.Option(help="Chord times this at the same thickness in metres; 1 is none.")
-    ] = 1,
-    twist: Annotated[float, typer.Option(help="Added to the twist [deg]; 0 changes nothing.")] = 0,
-    chord_scale: Annotated[float, typer.Option(help="Sections times this; 1 is none.")] = 1,
-    twist_scale: Annotated[float, typer.Option(help="Twist times this; 1 is none.")] = 1,
-    prebend_scale: Annotated[float, typer.Option(help="Prebend times this; 1 is none.")] = 1,
-    window: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FROM,TO", help="Where the changes fade in; past round roots if not given."
-        ),
-    ] = None,
-    allow_extrapolation: Annotated[
-        bool, typer.Option("--allow-extrapolation", help="Go beyond the space's data.")
-    ] = False,
-    name: Annotated[str | None, typer.Option(help="Of the perturbed blade and its files.")] = None,
+    changes: Changes = NO_CHANGES,
     formats: Formats = None,
     landmarks: Landmarks = 401,
     stations: Stations = 300,
@@ -224,54 +199,9 @@ def perturb(
     light: LightOption = False,
 ) -> None:
     """Perturb a blade consistently and build it."""
-    from math import radians
-
-    from bladegen.pga import ShapeSpace
-    from bladegen.texts import coordinates, span_window
-
-    t = coordinates(pga or [])
     options = build_options(tolerance, stations, tip, unit, step, light)
     made = read_blade(blade, landmarks, path, planes, trailing_edge, fairing)
-    variant = made.perturbed(
-        None if t is None else ShapeSpace.load(space) if space else ShapeSpace.bundled(),
-        () if t is None else t,
-        thickness=thickness,
-        camber=camber,
-        chord=chord,
-        twist=radians(twist),
-        chord_scale=chord_scale,
-        twist_scale=twist_scale,
-        prebend_scale=prebend_scale,
-        window=None if window is None else span_window(window),
-        allow_extrapolation=allow_extrapolation,
-        name=name or f"{made.name}-perturbed",
-    )
-    _build(variant, output, formats, options)
-
-
-@app.command()
-def preview(
-    blade: BladeName,
-    screenshot: Annotated[
-        Path | None, typer.Option(help="Write a PNG instead of opening a window.")
-    ] = None,
-    landmarks: Landmarks = 401,
-    path: PathOption = PathKind.geodesic,
-    planes: PlanesOption = Planes.axis,
-    trailing_edge: EdgeOption = "2mm",
-    fairing: FairingOption = FAIRING,
-) -> None:
-    """Look at a blade in a window, or write a picture of it."""
-    from bladegen import preview as view
-    from bladegen.files import replacing
-
-    made = read_blade(blade, landmarks, path, planes, trailing_edge, fairing)
-    if screenshot is None:
-        view.show(made)
-        return
-    with replacing(screenshot) as temporary:
-        view.picture(made, temporary)
-    typer.echo(f"wrote {screenshot}")
+    _build(changes.applied(made), output, formats, options)
 
 
 def _build(

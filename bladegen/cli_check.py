@@ -10,7 +10,7 @@ from bladegen.cli_options import Json, PathKind, Planes, read_blade
 from bladegen.errors import BladegenError
 from bladegen.terminal import print_figures, print_findings, print_table, progress_bar
 
-__all__ = ["check"]
+__all__ = ["blade_of", "check"]
 
 
 def check(
@@ -37,7 +37,7 @@ def check(
         raise BladegenError("screenshot: a picture is made of two files; name another one")
     from bladegen import checks
 
-    blade = _blade(file)
+    blade = blade_of(file)
     result = checks.check_file(Path(file)) if blade is None else checks.check_blade(blade)
     if as_json:
         typer.echo(
@@ -59,7 +59,7 @@ def check(
         raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
 
 
-def _blade(file: str) -> Any:
+def blade_of(file: str) -> Any:
     """Return the blade that a name or a definition means, None for other files."""
     from bladegen.readers import SUFFIXES, bundled
 
@@ -75,7 +75,7 @@ def _compare(file: str, other: str, screenshot: Path | None, as_json: bool) -> N
 
     with progress_bar() as progress:
         progress("reading")
-        one, two = (surface_of(_blade(name) or Path(name)) for name in (file, other))
+        one, two = (surface_of(blade_of(name) or Path(name)) for name in (file, other))
         progress("measuring distances")
         found, note = compared(one, two)
         if screenshot is not None:

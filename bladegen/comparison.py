@@ -7,7 +7,6 @@ pyvista is imported when first needed.
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -16,17 +15,29 @@ from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.errors import FileError
 from bladegen.mesh import TriangleMesh
-from bladegen.preview import INK, quietly, require_renderer
+from bladegen.preview import quietly, require_renderer
+from bladegen.preview.cameras import VIEWS
+from bladegen.preview.drawing import (
+    add_colour_bar,
+    add_surface,
+    cuts,
+    dress,
+    look,
+    shaded,
+    signed_distances,
+)
+from bladegen.preview.picture import save_image
+from bladegen.preview.renderer import image_of
+from bladegen.preview.scene import MILLIMETRES, Field, Layer, Scene
+from bladegen.style import INK, STATION
 
-__all__ = ["Comparison", "compared", "draw", "surface_of"]
+__all__ = ["Comparison", "compared", "draw", "scene", "surface_of"]
 
 DEFLECTION = 1e-3  # m, of triangles to the CAD surface they stand for; finer takes minutes
 BANDS = 10  # of the span, in the table
 SAME_SCALE = 30.0  # sizes that differ by more are in other units: a mesh file names none
 MESHES = (".stl", ".glb", ".ply", ".obj", ".3mf", ".off")
-MILLIMETRES = 1000.0
 SIZE = (1600, 700)  # pixels
-SHOWN = 99.5  # per cent of the vertices whose distances the colours resolve
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +128,28 @@ def compared(one: TriangleMesh, other: TriangleMesh) -> tuple[Comparison, str]:
         one, note = _shrunk(one), "the first file is taken to be in millimetres"
     elif ratio < 1.0 / SAME_SCALE:
         other, note = _shrunk(other), "the second file is taken to be in millimetres"
-    return Comparison(one, other, _distances(one, other), _distances(other, one)), note
+    return Comparison(one, other, signed_distances(one, other), signed_distances(other, one)), note
+
+
+def scene(comparison: Comparison, title: str) -> Scene:
+    """Return the first surface coloured by its distance from the other, with cuts of the other.
+
+    Fields and layers have the names of a perturbed blade's, so that the same keys show them.
+    """
+    shown, other = comparison.one, comparison.other
+    distance = MILLIMETRES * comparison.of_one
+    label = "distance from the other, mm, outside positive"
+    figures = comparison.figures
+    return Scene(
+        title=title,
+        caption=f"largest distance {figures['maximum_mm']:.3g} mm, RMS {figures['rms_mm']:.3g} mm",
+        surface=shown,
+        fields=(Field.signed("distance", label, distance, shown),),
+        layers=(
+            Layer("sections", (cuts(shown),), INK, 1.2),
+            Layer("baseline", (cuts(other),), STATION, 1.2),
+        ),
+    )
 
 
 def draw(comparison: Comparison, title: str, path: Path) -> None:
@@ -129,50 +161,24 @@ def draw(comparison: Comparison, title: str, path: Path) -> None:
         If this machine cannot render.
     """
     import pyvista as pv
-    from PIL import Image
 
     require_renderer()
-    shown = _poly(comparison.one)
-    shown["distance, mm"] = MILLIMETRES * comparison.of_one
-    reach = float(np.percentile(np.abs(shown["distance, mm"]), SHOWN)) or 1e-6
+    found = scene(comparison, title)
+    field = found.fields[0]
+    shown = shaded(found.surface, found.fields)
     with quietly():
         plotter = pv.Plotter(off_screen=True, window_size=list(SIZE), shape=(2, 1), border=False)
-        for row, side in enumerate((1.0, -1.0)):
+        for row, side in enumerate(("suction side", "pressure side")):
             plotter.subplot(row, 0)
-            plotter.set_background("white")
-            plotter.add_mesh(
-                shown.copy(),
-                scalars="distance, mm",
-                cmap="PuOr",  # told apart by everyone; white where nothing moved
-                clim=(-reach, reach),
-                scalar_bar_args={"color": INK, "vertical": False, "fmt": "%.3g"},
-                show_scalar_bar=row == 1,
-            )
-            low, high = np.array(shown.bounds).reshape(3, 2).T
-            middle = 0.5 * (low + high)
-            size = float(high[2] - low[2])
-            eye = middle + np.array([side * size, 0.0, 0.0])
-            plotter.camera_position = [eye, middle, (0, -1, 0)]
-            plotter.enable_parallel_projection()
-            plotter.camera.parallel_scale = 0.54 * size * SIZE[1] / (2 * SIZE[0])
-            name = ("suction side", "pressure side")[row]
-            plotter.add_text(f"{title}, {name}", position=(16, 16), font_size=9, color=INK)
-        image = plotter.screenshot(None, return_img=True)
-        plotter.close()
-    Image.fromarray(image).save(path, format="PNG", optimize=True)
+            dress(plotter)
+            actor = add_surface(plotter, shown, field)
+            look(plotter, found.surface.vertices, VIEWS[side], 2.0 * SIZE[0] / SIZE[1])
+            plotter.add_text(f"{title}, {side}", position=(16, 16), font_size=9, color=INK)
+            if row:
+                add_colour_bar(plotter, actor, field.label)
+        image = image_of(plotter, f"{path}: the picture")
+    save_image(image, path)
 
 
 def _shrunk(surface: TriangleMesh) -> TriangleMesh:
     return TriangleMesh(surface.vertices / MILLIMETRES, surface.faces)
-
-
-def _distances(of: TriangleMesh, to: TriangleMesh) -> Array:
-    """Return the signed distances of one surface's vertices to the other's triangles."""
-    measured = _poly(of).compute_implicit_distance(_poly(to))
-    return np.asarray(measured["implicit_distance"], dtype=np.float64)
-
-
-def _poly(surface: TriangleMesh) -> Any:
-    import pyvista as pv
-
-    return pv.PolyData.from_regular_faces(np.array(surface.vertices), surface.faces)

@@ -11,7 +11,8 @@ from bladegen.arrays import Array, Indices, Mask
 from bladegen.blade import Blade
 from bladegen.errors import RenderError
 from bladegen.files import replacing
-from bladegen.plots import INK, figure_of, save_figure
+from bladegen.plots import dress, figure_of, save_figure
+from bladegen.style import BASELINE, INK, VARIANT
 
 __all__ = ["contact_sheet"]
 
@@ -20,7 +21,6 @@ OVERLAID = (0.15, 0.35, 0.6, 0.9)  # of the span: thick, transition, mid and out
 MOST = 1000  # sections drawn at a span; of more variants every so many-th
 AT_ONCE = 64
 PICTURE = (2100, 720)  # pixels
-BASELINE, VARIANT = "#d55e00", "#0072b2"
 
 
 def contact_sheet(
@@ -70,6 +70,7 @@ def contact_sheet(
     opacity = float(np.clip(12.0 / max(len(chosen), 1), 0.03, 0.5))
     given = baseline.sections(eta[spans])
     for span, axis, one in zip(spans, axes, given, strict=True):
+        dress(axis)
         axis.set_title(f"eta = {eta[span]:.3f}", fontsize=9)
         axis.plot(one[:, 1], one[:, 0], color=BASELINE, linewidth=1.4, zorder=3, label="baseline")
         axis.set_aspect("equal", adjustable="datalim")

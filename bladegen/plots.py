@@ -1,5 +1,6 @@
 """Diagrams by matplotlib: what a shape space holds.  matplotlib is imported when first needed."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -9,18 +10,31 @@ from bladegen import affine
 from bladegen.arrays import Array
 from bladegen.errors import ExportError
 from bladegen.pga import ShapeSpace
+from bladegen.style import CATEGORIES, FAINT, INK, SEQUENTIAL
 
-__all__ = ["INK", "draw_space", "figure", "figure_of", "physical", "save_figure", "shade"]
+__all__ = [
+    "SUFFIXES",
+    "draw_space",
+    "dress",
+    "figure",
+    "figure_of",
+    "physical",
+    "require_suffix",
+    "save_figure",
+    "save_pages",
+    "shade",
+]
 
 SUFFIXES = (".png", ".svg", ".pdf")
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe & Ito
-INK = "#22303c"
 
 
 def figure(rows: int, columns: int, *, width: float, height: float) -> tuple[Any, Any]:
     """Return a matplotlib figure without any window, and its axes (rows, columns)."""
     drawn = figure_of(width, height)
-    return drawn, drawn.subplots(rows, columns, squeeze=False)
+    axes = drawn.subplots(rows, columns, squeeze=False)
+    for axis in axes.flat:
+        dress(axis)
+    return drawn, axes
 
 
 def figure_of(width: float, height: float) -> Any:
@@ -34,10 +48,22 @@ def figure_of(width: float, height: float) -> Any:
 
 
 def shade(fraction: float) -> Any:
-    """Return a colour from dark to bright, told apart by everyone (viridis)."""
+    """Return a colour from dark to bright, told apart by everyone."""
     from matplotlib import colormaps
 
-    return colormaps["viridis"](0.92 * fraction)
+    return colormaps[SEQUENTIAL](0.92 * fraction)
+
+
+def dress(axis: Any) -> None:
+    """Give axes the common look: a faint grid behind, no box, ink instead of black."""
+    axis.grid(True, color=FAINT, linewidth=0.6)
+    axis.set_axisbelow(True)
+    axis.spines[["top", "right"]].set_visible(False)
+    axis.spines[["left", "bottom"]].set_color(INK)
+    axis.tick_params(colors=INK, labelsize=9)
+    for text in (axis.title, axis.xaxis.label, axis.yaxis.label):
+        text.set_color(INK)
+        text.set_fontsize(10)
 
 
 def save_figure(drawn: Any, path: Path) -> None:
@@ -48,9 +74,23 @@ def save_figure(drawn: Any, path: Path) -> None:
     ExportError
         If the suffix is none of PNG, SVG and PDF.
     """
+    require_suffix(path)
+    drawn.savefig(path, dpi=150)
+
+
+def save_pages(figures: Iterable[Any], path: Path) -> None:
+    """Write figures as the pages of one PDF."""
+    from matplotlib.backends.backend_pdf import PdfPages
+
+    with PdfPages(path) as pages:
+        for drawn in figures:
+            pages.savefig(drawn)
+
+
+def require_suffix(path: Path) -> None:
+    """Raise `ExportError` if a figure cannot be written to a file of that name."""
     if path.suffix.lower() not in SUFFIXES:
         raise ExportError(f"{path}: suffix {path.suffix!r}, allowed are {', '.join(SUFFIXES)}")
-    drawn.savefig(path, dpi=150)
 
 
 def draw_space(space: ShapeSpace, path: Path) -> None:
@@ -60,7 +100,7 @@ def draw_space(space: ShapeSpace, path: Path) -> None:
     drawn, axes = figure(2, columns, width=3.4 * columns, height=6.4)
     for k in range(r):
         axis = axes[0, k]
-        for value, colour in ((space.lower[k], COLOURS[0]), (space.upper[k], COLOURS[1])):
+        for value, colour in ((space.lower[k], CATEGORIES[0]), (space.upper[k], CATEGORIES[1])):
             t = np.zeros(r)
             t[k] = value
             axis.plot(*space.decode(t).T, color=colour, label=f"t = {value:.3f}")
@@ -70,12 +110,12 @@ def draw_space(space: ShapeSpace, path: Path) -> None:
         axis.set_aspect("equal")
     spectrum = axes[1, 0]
     share = 100.0 * np.cumsum(space.variance_ratio[:20])
-    spectrum.plot(np.arange(1, len(share) + 1), share, "o-", color=COLOURS[0], markersize=3)
+    spectrum.plot(np.arange(1, len(share) + 1), share, "o-", color=CATEGORIES[0], markersize=3)
     spectrum.set(xlabel="modes", ylabel="variance in sum, %", title="spectrum", ylim=(0, 102))
     data = axes[1, 1]
     shown = space.coordinates[:: max(1, len(space.coordinates) // 4000)]
     second = 1 if r > 1 else 0
-    data.scatter(shown[:, 0], shown[:, second], s=2, color=COLOURS[0], alpha=0.4, linewidths=0)
+    data.scatter(shown[:, 0], shown[:, second], s=2, color=CATEGORIES[0], alpha=0.4, linewidths=0)
     data.set(xlabel="t1, rad", ylabel=f"t{second + 1}, rad", title="shapes learned from")
     for axis in axes.flat:
         if not axis.has_data():

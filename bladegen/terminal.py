@@ -35,7 +35,7 @@ def progress_bar() -> Iterator[Any]:
 
 
 @contextmanager
-def variants_bar(count: int) -> Iterator[Any]:
+def variants_bar(count: int, what: str = "variants") -> Iterator[Any]:
     """Show how many of `count` variants are whole, the rate, and the time that remains."""
     from rich.console import Console
     from rich.progress import (
@@ -58,7 +58,7 @@ def variants_bar(count: int) -> Iterator[Any]:
     )
     quiet = not console.is_terminal
     with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
-        task = bar.add_task("variants", total=count, rate="")
+        task = bar.add_task(what, total=count, rate="")
         start, first = time.monotonic(), -1
 
         def told(done: int) -> None:

@@ -60,7 +60,7 @@ def chord_share(text: str, field: str) -> float | None:
         ) from None
 
 
-def factor_bounds(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
+def factor_bounds(texts: Sequence[str], field: str = "vary") -> dict[str, tuple[float, float]]:
     """Return bounds of factors from texts like ``thickness=0.9:1.1``; twist is in degrees.
 
     Raises
@@ -74,10 +74,10 @@ def factor_bounds(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
     bounds = {}
     for text in texts:
         name, _, limits = text.partition("=")
-        values = _numbers(limits.replace(":", ","), "vary") if limits.count(":") == 1 else []
+        values = _numbers(limits.replace(":", ","), field) if limits.count(":") == 1 else []
         if len(values) != 2:
             raise BladegenError(
-                f"vary: got {text!r}, must be NAME=LOW:HIGH, such as thickness=0.9:1.1"
+                f"{field}: got {text!r}, must be NAME=LOW:HIGH, such as thickness=0.9:1.1"
             )
         low, high = np.radians(values) if name == "twist" else values
         bounds[name.strip()] = (float(low), float(high))

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import bladegen as bg
-from bladegen import affine, cst, grassmann, plots
+from bladegen import affine, cst, grassmann, plots, style
 from bladegen.database import baselines
 from bladegen.landmarks import landmarks
 
@@ -35,10 +35,10 @@ def main(target: Path) -> None:
     rms, largest = np.array(rows).T
 
     drawn, ((left, right),) = plots.figure(1, 2, width=10, height=4)
-    left.semilogy(np.arange(1, 25), space.variance_ratio[:24], "o-", color=plots.COLOURS[0])
+    left.semilogy(np.arange(1, 25), space.variance_ratio[:24], "o-", color=style.CATEGORIES[0])
     left.set(xlabel="mode", ylabel="share of the variance", title="spectrum")
-    right.semilogy(RANKS, rms, "o-", color=plots.COLOURS[0], label="RMS")
-    right.semilogy(RANKS, largest, "s-", color=plots.COLOURS[1], label="largest")
+    right.semilogy(RANKS, rms, "o-", color=style.CATEGORIES[0], label="RMS")
+    right.semilogy(RANKS, largest, "s-", color=style.CATEGORIES[1], label="largest")
     right.set(xlabel="modes", ylabel="distance, chord", title="held-out shapes, median")
     right.legend()
     plots.save_figure(drawn, target)

@@ -89,24 +89,6 @@ def test_build_that_misses_its_tolerance_ends_with_1(tmp_path, monkeypatch):
     assert "out-of-tolerance" in str(result.exception)
 
 
-@pytest.mark.parametrize("edge", ["given", "sharp", "5mm"])
-def test_preview_writes_pictures(edge, tmp_path):
-    png = tmp_path / "a.png"
-    result = run(
-        "preview", "nrel5mw", "--screenshot", png, "--landmarks", 101,
-        "--trailing-edge", edge,
-    )  # fmt: skip
-    assert result.exit_code == 0, result.output
-    assert png.stat().st_size > 10_000
-
-
-def test_preview_opens_a_window(monkeypatch):
-    shown = []
-    monkeypatch.setattr("bladegen.preview.show", shown.append)
-    assert run("preview", "nrel5mw", "--landmarks", 51).exit_code == 0
-    assert shown[0].name == "nrel5mw"
-
-
 def test_check_of_a_definition_and_of_a_file(tmp_path):
     result = run("check", "nrel5mw")
     assert result.exit_code == 0

@@ -1,0 +1,113 @@
+"""The options that perturb a blade, given once to every command that takes them."""
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+__all__ = ["NO_CHANGES", "Changes", "perturbing"]
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What a command line asks of `Blade.perturbed`; twist in degrees."""
+
+    pga: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="t1,t2,...[@ETA]",
+            help="Coordinates along the modes in rad; with @ETA repeated, knots over span.",
+        ),
+    ] = None
+    space: Annotated[
+        Path | None, typer.Option(help="A space made by `space build`; the bundled one if not.")
+    ] = None
+    thickness: Annotated[float, typer.Option(help="Thickness times this; 1 changes nothing.")] = 1
+    camber: Annotated[
+        float, typer.Option(help="diag(2 - s, s), chord against thickness; 1 changes nothing.")
+    ] = 1
+    chord: Annotated[
+        float, typer.Option(help="Chord times this at the same thickness in metres; 1 is none.")
+    ] = 1
+    twist: Annotated[float, typer.Option(help="Added to the twist, in deg; 0 changes nothing.")] = 0
+    chord_scale: Annotated[float, typer.Option(help="Sections times this; 1 is none.")] = 1
+    twist_scale: Annotated[float, typer.Option(help="Twist times this; 1 is none.")] = 1
+    prebend_scale: Annotated[float, typer.Option(help="Prebend times this; 1 is none.")] = 1
+    window: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FROM,TO", help="Where the changes fade in; past round roots if not given."
+        ),
+    ] = None
+    allow_extrapolation: Annotated[
+        bool, typer.Option("--allow-extrapolation", help="Go beyond the space's data.")
+    ] = False
+    name: Annotated[str | None, typer.Option(help="Of the perturbed blade and its files.")] = None
+
+    @property
+    def asked(self) -> bool:
+        """Whether anything is to change."""
+        shape = bool(self.pga)
+        return shape or any(getattr(self, key) != getattr(Changes, key) for key in AFFINE)
+
+    def shape_space(self) -> Any:
+        """Return the shape space that coordinates belong to."""
+        from bladegen.pga import ShapeSpace
+
+        return ShapeSpace.load(self.space) if self.space else ShapeSpace.bundled()
+
+    def applied(self, blade: Any) -> Any:
+        """Return the blade with the changes."""
+        from math import radians
+
+        from bladegen.texts import coordinates, span_window
+
+        t = coordinates(self.pga or [])
+        amounts = {key: float(getattr(self, key)) for key in AFFINE}
+        return blade.perturbed(
+            None if t is None else self.shape_space(),
+            () if t is None else t,
+            **(amounts | {"twist": radians(self.twist)}),
+            window=None if self.window is None else span_window(self.window),
+            allow_extrapolation=self.allow_extrapolation,
+            name=self.name or f"{blade.name}-perturbed",
+        )
+
+
+AFFINE = (
+    "thickness",
+    "camber",
+    "chord",
+    "twist",
+    "chord_scale",
+    "twist_scale",
+    "prebend_scale",
+)
+NO_CHANGES = Changes()
+
+
+def perturbing(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of `Changes`, in the place of its parameter `changes`."""
+    own = inspect.signature(command)
+    parameters: list[inspect.Parameter] = []
+    for parameter in own.parameters.values():
+        if parameter.name != "changes":
+            parameters.append(parameter)
+            continue
+        parameters += [
+            parameter.replace(name=field.name, annotation=field.type, default=field.default)
+            for field in fields(Changes)
+        ]
+
+    @wraps(command)
+    def whole(**given: Any) -> None:
+        taken = {field.name: given.pop(field.name) for field in fields(Changes)}
+        command(**given, changes=Changes(**taken))
+
+    whole.__dict__["__signature__"] = own.replace(parameters=parameters)
+    whole.__annotations__ = {one.name: one.annotation for one in parameters}
+    return whole

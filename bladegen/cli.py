@@ -11,35 +11,18 @@ from bladegen import __version__, cli_space
 from bladegen.cli_check import check
 from bladegen.cli_family import family
 from bladegen.cli_options import (
-    FAIRING,
+    LANDMARKS,
+    MAKING,
+    PRODUCING,
     BladeName,
-    EdgeOption,
-    FairingOption,
     Formats,
-    GridAlong,
-    GridAround,
-    GridEdge,
     Json,
     Landmarks,
-    LightOption,
-    PathKind,
-    PathOption,
-    Planes,
-    PlanesOption,
-    SchemaOption,
-    SideSpacing,
-    SpanSpacing,
-    Stations,
-    StepSchema,
-    TipKind,
-    TipOption,
-    Tolerance,
-    Unit,
-    UnitOption,
-    build_options,
-    read_blade,
+    Making,
+    Producing,
+    grouped,
 )
-from bladegen.cli_perturb import NO_CHANGES, Changes, perturbing
+from bladegen.cli_perturb import NO_CHANGES, Changes
 from bladegen.cli_view import KEYS, plot, preview
 from bladegen.errors import BladegenError
 from bladegen.terminal import (
@@ -130,28 +113,14 @@ def info(blade: BladeName, as_json: Json = False) -> None:
 
 
 @app.command()
+@grouped
 def build(
     blade: BladeName,
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
     formats: Formats = None,
-    landmarks: Landmarks = 401,
-    stations: Stations = 300,
-    path: PathOption = PathKind.geodesic,
-    planes: PlanesOption = Planes.axis,
-    tolerance: Tolerance = "0.3mm",
-    trailing_edge: EdgeOption = "2mm",
-    fairing: FairingOption = FAIRING,
-    tip: TipOption = TipKind.flat,
-    unit: UnitOption = Unit.m,
-    step: SchemaOption = StepSchema.ap242,
-    light: LightOption = False,
-    grid_around: GridAround = 257,
-    grid_along: GridAlong = 129,
-    grid_edge: GridEdge = 8,
-    le_spacing: SideSpacing = 1e-3,
-    te_spacing: SideSpacing = 1e-3,
-    tip_spacing: SpanSpacing = 2e-4,
-    root_spacing: SpanSpacing = 0.01,
+    landmarks: Landmarks = LANDMARKS,
+    making: Making = MAKING,
+    producing: Producing = PRODUCING,
     rotor: Annotated[
         bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
     ] = False,
@@ -160,17 +129,8 @@ def build(
     ] = False,
 ) -> None:
     """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
-    spacing = {
-        "around": grid_around,
-        "along": grid_along,
-        "edge": grid_edge,
-        "leading_edge": le_spacing,
-        "trailing_edge": te_spacing,
-        "tip": tip_spacing,
-        "root": root_spacing,
-    }
-    options = build_options(tolerance, stations, tip, unit, step, light, spacing)
-    made = read_blade(blade, landmarks, path, planes, trailing_edge, fairing)
+    options = producing.options()
+    made = making.blade(blade, landmarks)
     whole = None
     if rotor or mirror:
         from bladegen.rotor import rotor_of
@@ -180,28 +140,19 @@ def build(
 
 
 @app.command()
-@perturbing
+@grouped
 def perturb(
     blade: BladeName,
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
     changes: Changes = NO_CHANGES,
     formats: Formats = None,
-    landmarks: Landmarks = 401,
-    stations: Stations = 300,
-    path: PathOption = PathKind.geodesic,
-    planes: PlanesOption = Planes.axis,
-    tolerance: Tolerance = "0.3mm",
-    trailing_edge: EdgeOption = "2mm",
-    fairing: FairingOption = FAIRING,
-    tip: TipOption = TipKind.flat,
-    unit: UnitOption = Unit.m,
-    step: SchemaOption = StepSchema.ap242,
-    light: LightOption = False,
+    landmarks: Landmarks = LANDMARKS,
+    making: Making = MAKING,
+    producing: Producing = PRODUCING,
 ) -> None:
     """Perturb a blade consistently and build it."""
-    options = build_options(tolerance, stations, tip, unit, step, light)
-    made = read_blade(blade, landmarks, path, planes, trailing_edge, fairing)
-    _build(changes.applied(made), output, formats, options)
+    options = producing.options()
+    _build(changes.applied(making.blade(blade, landmarks)), output, formats, options)
 
 
 def _build(

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli_options import Json, PathKind, Planes, read_blade
+from bladegen.cli_options import MAKING, Json
 from bladegen.errors import BladegenError
 from bladegen.terminal import print_figures, print_findings, print_table, progress_bar
 
@@ -64,7 +64,7 @@ def blade_of(file: str) -> Any:
     from bladegen.readers import SUFFIXES, bundled
 
     if file in bundled() or Path(file).suffix.lower() in SUFFIXES:
-        return read_blade(file, 401, PathKind.geodesic, Planes.axis, "2mm")
+        return MAKING.blade(file)
     return None
 
 

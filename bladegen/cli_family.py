@@ -8,26 +8,14 @@ from typing import Annotated, Any
 import typer
 
 from bladegen.cli_options import (
-    FAIRING,
+    LANDMARKS,
+    MAKING,
+    PRODUCING,
     BladeName,
-    EdgeOption,
-    FairingOption,
     Formats,
-    LightOption,
-    PathKind,
-    PathOption,
-    Planes,
-    PlanesOption,
-    SchemaOption,
-    Stations,
-    StepSchema,
-    TipKind,
-    TipOption,
-    Tolerance,
-    Unit,
-    UnitOption,
-    build_options,
-    read_blade,
+    Making,
+    Producing,
+    grouped,
 )
 from bladegen.errors import FamilyError
 from bladegen.terminal import print_table, variants_bar
@@ -35,6 +23,7 @@ from bladegen.terminal import print_table, variants_bar
 __all__ = ["family"]
 
 
+@grouped
 def family(
     blade: BladeName,
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the family.")],
@@ -72,16 +61,8 @@ def family(
         bool, typer.Option("--double", help="Store sections as float64, not float32.")
     ] = False,
     formats: Formats = None,
-    stations: Stations = 300,
-    tolerance: Tolerance = "0.3mm",
-    tip: TipOption = TipKind.flat,
-    unit: UnitOption = Unit.m,
-    step: SchemaOption = StepSchema.ap242,
-    light: LightOption = False,
-    path: PathOption = PathKind.geodesic,
-    planes: PlanesOption = Planes.axis,
-    trailing_edge: EdgeOption = "2mm",
-    fairing: FairingOption = FAIRING,
+    producing: Producing = PRODUCING,
+    making: Making = MAKING,
     jobs: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
     dask: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead of --jobs.")
@@ -101,9 +82,9 @@ def family(
         known = ShapeSpace.bundled() if space is None else ShapeSpace.load(space)
     if table is not None and (count is not None or vary):
         raise FamilyError("table: it says what varies and how often; leave --count and --vary out")
-    landmarks = 401 if known is None else len(known.u)
+    landmarks = LANDMARKS if known is None else len(known.u)
     planned = plan(
-        read_blade(blade, landmarks, path, planes, trailing_edge, fairing),
+        making.blade(blade, landmarks),
         known,
         count=100 if count is None else count,
         seed=seed,
@@ -120,7 +101,7 @@ def family(
         output,
         tuple(formats or ()),
         "float64" if double else "float32",
-        build_options(tolerance, stations, tip, unit, step, light),
+        producing.options(),
     )
     try:
         with _cluster(dask) as client, variants_bar(len(planned)) as progress:

@@ -1,41 +1,35 @@
-"""What commands have in common: their options, and what they make of them."""
+"""What commands have in common: groups of options, and what they make of them.
 
+A group is a frozen dataclass whose fields are options; `grouped` gives a command the options of
+every group among its parameters, so that each option stands in one place.
+"""
+
+import inspect
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
-from typing import Annotated, Any
+from functools import wraps
+from typing import Annotated, Any, get_args
 
 import typer
 
 __all__ = [
+    "LANDMARKS",
+    "MAKING",
+    "PRODUCING",
     "BladeName",
-    "EdgeOption",
-    "FairingOption",
     "Formats",
-    "GridAlong",
-    "GridAround",
-    "GridEdge",
     "Json",
     "Landmarks",
-    "LightOption",
-    "PathKind",
-    "PathOption",
-    "Planes",
-    "PlanesOption",
-    "SchemaOption",
-    "SideSpacing",
-    "SpanSpacing",
-    "Stations",
-    "StepSchema",
-    "TipKind",
-    "TipOption",
-    "Tolerance",
-    "Unit",
-    "UnitOption",
-    "build_options",
-    "read_blade",
+    "Making",
+    "Producing",
+    "grouped",
 ]
 
-
+LANDMARKS = 401
 LIGHT = "1mm"
+GRIDS = "Structured grids: p3d, fmt, cgns, vtu"
 
 
 class PathKind(StrEnum):
@@ -74,7 +68,7 @@ class Planes(StrEnum):
 
 
 BladeName = Annotated[
-    str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a windIO file.")
+    str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a definition's file.")
 ]
 Formats = Annotated[
     list[str] | None,
@@ -84,90 +78,159 @@ Formats = Annotated[
         "repeated.",
     ),
 ]
-Tolerance = Annotated[
-    str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
-]
-Stations = Annotated[int, typer.Option(help="Sections of the meshes.")]
-TipOption = Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")]
-UnitOption = Annotated[Unit, typer.Option(help="Unit of STL, PLY, OBJ, VTP, PLOT3D and VTU files.")]
-SchemaOption = Annotated[StepSchema, typer.Option("--step", help="Schema of STEP files.")]
-LightOption = Annotated[bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")]
-GridAround = Annotated[int, typer.Option(help="Grids: points around a section, odd.")]
-GridAlong = Annotated[int, typer.Option(help="Grids: points from root to tip.")]
-GridEdge = Annotated[int, typer.Option(help="Grids: cells across the trailing edge, even.")]
-SideSpacing = Annotated[
-    float, typer.Option(help="Grids: cell at that edge over the side's length, about the chord.")
-]
-SpanSpacing = Annotated[float, typer.Option(help="Grids: cell at that end over the length.")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
-PathOption = Annotated[
-    PathKind, typer.Option("--path", help="Join stations by geodesics or by a smooth spline.")
-]
-PlanesOption = Annotated[
-    Planes, typer.Option("--planes", help="Section planes normal to the reference axis or to z.")
-]
-EdgeOption = Annotated[
-    str,
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+SideSpacing = Annotated[
+    float,
     typer.Option(
-        "--trailing-edge",
-        metavar="LENGTH|given|sharp",
-        help="Least thickness of the trailing edge, such as 2mm; or as given; or sharp.",
+        help="Cell at that edge over the side's length, about the chord.", rich_help_panel=GRIDS
     ),
 ]
-FairingOption = Annotated[
-    str,
-    typer.Option(
-        "--fairing",
-        metavar="SHARE|off",
-        help="Take noise out of airfoils, at most that share of the chord off any point; or off.",
-    ),
+SpanSpacing = Annotated[
+    float, typer.Option(help="Cell at that end over the length.", rich_help_panel=GRIDS)
 ]
-FAIRING = "1e-5"
 
 
-def read_blade(
-    source: str, landmarks: int, path: str, planes: Planes, edge: str, fairing: str = FAIRING
-) -> Any:
-    """Read and build a blade as the options say."""
-    from bladegen.blade import Blade
-    from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
-    from bladegen.planform import normal_to_axis, normal_to_z
-    from bladegen.readers import read
-    from bladegen.texts import chord_share, metres
+@dataclass(frozen=True)
+class Making:
+    """How a definition becomes a blade."""
 
-    named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
-    return Blade.from_definition(
-        read(source),
-        landmarks=landmarks,
-        path=path,
-        planes={"axis": normal_to_axis, "z": normal_to_z}[planes],
-        trailing_edge=named.get(edge) or MinimumThickness(metres(edge, "trailing-edge")),
-        fairing=chord_share(fairing, "fairing"),
-    )
+    path: Annotated[
+        PathKind, typer.Option(help="Join stations by geodesics or by a smooth spline.")
+    ] = PathKind.geodesic
+    planes: Annotated[
+        Planes, typer.Option(help="Section planes normal to the reference axis or to z.")
+    ] = Planes.axis
+    trailing_edge: Annotated[
+        str,
+        typer.Option(
+            metavar="LENGTH|given|sharp",
+            help="Least thickness of the trailing edge, such as 2mm; or as given; or sharp.",
+        ),
+    ] = "2mm"
+    fairing: Annotated[
+        str,
+        typer.Option(
+            metavar="SHARE|off",
+            help="Take noise out of airfoils, at most that share of the chord off any point; "
+            "or off.",
+        ),
+    ] = "1e-5"
+
+    def blade(self, source: str, landmarks: int = LANDMARKS) -> Any:
+        """Read and build a blade."""
+        from bladegen.blade import Blade
+        from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
+        from bladegen.planform import normal_to_axis, normal_to_z
+        from bladegen.readers import read
+        from bladegen.texts import chord_share, metres
+
+        named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
+        edge = named.get(self.trailing_edge)
+        return Blade.from_definition(
+            read(source),
+            landmarks=landmarks,
+            path=self.path,
+            planes={"axis": normal_to_axis, "z": normal_to_z}[self.planes],
+            trailing_edge=edge or MinimumThickness(metres(self.trailing_edge, "trailing-edge")),
+            fairing=chord_share(self.fairing, "fairing"),
+        )
 
 
-def build_options(
-    tolerance: str,
-    stations: int,
-    tip: TipKind,
-    unit: Unit,
-    schema: StepSchema,
-    light: bool = False,
-    spacing: dict[str, Any] | None = None,
-) -> Any:
-    """Return how products are made, as the options say."""
-    from bladegen.exporters import Options
-    from bladegen.grid import Spacing
-    from bladegen.texts import metres
-    from bladegen.tips import Tip, flat_tip, round_tip
+@dataclass(frozen=True)
+class Producing:
+    """How a blade becomes files."""
 
-    tips: dict[str, Tip] = {"flat": flat_tip, "round": round_tip}
-    return Options(
-        tolerance=metres(LIGHT if light else tolerance, "tolerance"),
-        step_schema=schema,
-        stations=stations,
-        tip=tips[tip],
-        unit=unit,
-        spacing=Spacing(**(spacing or {})),
-    )
+    tolerance: Annotated[
+        str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
+    ] = "0.3mm"
+    light: Annotated[
+        bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")
+    ] = False
+    stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300
+    tip: Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")] = TipKind.flat
+    unit: Annotated[
+        Unit, typer.Option(help="Unit of STL, PLY, OBJ, VTP, PLOT3D and VTU files.")
+    ] = Unit.m
+    step: Annotated[StepSchema, typer.Option(help="Schema of STEP files.")] = StepSchema.ap242
+    grid_around: Annotated[
+        int, typer.Option(help="Points around a section, odd.", rich_help_panel=GRIDS)
+    ] = 257
+    grid_along: Annotated[
+        int, typer.Option(help="Points from root to tip.", rich_help_panel=GRIDS)
+    ] = 129
+    grid_edge: Annotated[
+        int, typer.Option(help="Cells across the trailing edge, even.", rich_help_panel=GRIDS)
+    ] = 8
+    le_spacing: SideSpacing = 1e-3
+    te_spacing: SideSpacing = 1e-3
+    tip_spacing: SpanSpacing = 2e-4
+    root_spacing: SpanSpacing = 0.01
+
+    def options(self) -> Any:
+        """Return how products are made."""
+        from bladegen.exporters import Options
+        from bladegen.grid import Spacing
+        from bladegen.texts import metres
+        from bladegen.tips import Tip, flat_tip, round_tip
+
+        tips: dict[str, Tip] = {"flat": flat_tip, "round": round_tip}
+        return Options(
+            tolerance=metres(LIGHT if self.light else self.tolerance, "tolerance"),
+            step_schema=self.step,
+            stations=self.stations,
+            tip=tips[self.tip],
+            unit=self.unit,
+            spacing=Spacing(
+                around=self.grid_around,
+                along=self.grid_along,
+                edge=self.grid_edge,
+                leading_edge=self.le_spacing,
+                trailing_edge=self.te_spacing,
+                tip=self.tip_spacing,
+                root=self.root_spacing,
+            ),
+        )
+
+
+MAKING, PRODUCING = Making(), Producing()
+
+
+def grouped(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of each group among its parameters, in the group's place."""
+    own = inspect.signature(command)
+    groups: dict[str, Any] = {}
+    parameters: list[inspect.Parameter] = []
+    for parameter in own.parameters.values():
+        if not is_dataclass(parameter.annotation):
+            parameters.append(parameter)
+            continue
+        groups[parameter.name] = parameter.annotation
+        parameters += [
+            parameter.replace(
+                name=field.name,
+                annotation=_in_panel(field.type, parameter.annotation),
+                default=field.default,
+            )
+            for field in fields(parameter.annotation)
+        ]
+
+    @wraps(command)
+    def whole(**given: Any) -> None:
+        made = {
+            name: group(**{field.name: given.pop(field.name) for field in fields(group)})
+            for name, group in groups.items()
+        }
+        command(**given, **made)
+
+    whole.__dict__["__signature__"] = own.replace(parameters=parameters)
+    whole.__annotations__ = {one.name: one.annotation for one in parameters}
+    return whole
+
+
+def _in_panel(annotation: Any, group: Any) -> Any:
+    """Return an option that the help shows under its group's heading."""
+    kind, option = get_args(annotation)
+    shown = copy(option)
+    shown.rich_help_panel = option.rich_help_panel or group.__doc__.rstrip(".")
+    return Annotated[kind, shown]

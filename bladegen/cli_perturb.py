@@ -1,20 +1,17 @@
 """The options that perturb a blade, given once to every command that takes them."""
 
-import inspect
-from collections.abc import Callable
-from dataclasses import dataclass, fields
-from functools import wraps
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-__all__ = ["NO_CHANGES", "Changes", "perturbing"]
+__all__ = ["NO_CHANGES", "Changes"]
 
 
 @dataclass(frozen=True)
 class Changes:
-    """What a command line asks of `Blade.perturbed`; twist in degrees."""
+    """How a blade is perturbed."""
 
     pga: Annotated[
         list[str] | None,
@@ -88,26 +85,3 @@ AFFINE = (
     "prebend_scale",
 )
 NO_CHANGES = Changes()
-
-
-def perturbing(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of `Changes`, in the place of its parameter `changes`."""
-    own = inspect.signature(command)
-    parameters: list[inspect.Parameter] = []
-    for parameter in own.parameters.values():
-        if parameter.name != "changes":
-            parameters.append(parameter)
-            continue
-        parameters += [
-            parameter.replace(name=field.name, annotation=field.type, default=field.default)
-            for field in fields(Changes)
-        ]
-
-    @wraps(command)
-    def whole(**given: Any) -> None:
-        taken = {field.name: given.pop(field.name) for field in fields(Changes)}
-        command(**given, changes=Changes(**taken))
-
-    whole.__dict__["__signature__"] = own.replace(parameters=parameters)
-    whole.__annotations__ = {one.name: one.annotation for one in parameters}
-    return whole

@@ -7,17 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from bladegen.cli_check import blade_of
-from bladegen.cli_options import (
-    BladeName,
-    EdgeOption,
-    Landmarks,
-    PathKind,
-    PathOption,
-    Planes,
-    PlanesOption,
-    read_blade,
-)
-from bladegen.cli_perturb import NO_CHANGES, Changes, perturbing
+from bladegen.cli_options import LANDMARKS, MAKING, BladeName, Landmarks, Making, grouped
+from bladegen.cli_perturb import NO_CHANGES, Changes
 from bladegen.errors import BladegenError
 from bladegen.keys import help_text
 from bladegen.terminal import progress_bar, variants_bar
@@ -54,7 +45,7 @@ class Kind(StrEnum):
     pdf = "pdf"
 
 
-@perturbing
+@grouped
 def preview(
     blade: Annotated[
         str | None,
@@ -89,10 +80,8 @@ def preview(
         typer.Option(help="What colours show; distance for a perturbed blade, if not given."),
     ] = None,
     changes: Changes = NO_CHANGES,
-    landmarks: Landmarks = 401,
-    path: PathOption = PathKind.geodesic,
-    planes: PlanesOption = Planes.axis,
-    trailing_edge: EdgeOption = "2mm",
+    landmarks: Landmarks = LANDMARKS,
+    making: Making = MAKING,
 ) -> None:
     """Look at a blade: in a window, or as a picture, a page, a GIF or a film."""
     if compare is not None:
@@ -104,7 +93,7 @@ def preview(
         return
     if blade is None:
         raise BladegenError("preview: name a blade (`bladegen list` shows the bundled ones)")
-    made = read_blade(blade, landmarks, path, planes, trailing_edge)
+    made = making.blade(blade, landmarks)
     shown, baseline = (changes.applied(made), made) if changes.asked else (made, None)
     colouring = colour or (Colour.plain if baseline is None else Colour.distance)
     if gif is not None or mp4 is not None:
@@ -194,7 +183,7 @@ def _compare(one: str, other: str, screenshot: Path | None, html: Path | None) -
         view.show(comparison.scene(found, title), colour="distance")
 
 
-@perturbing
+@grouped
 def plot(
     blade: BladeName,
     output: Annotated[
@@ -207,10 +196,8 @@ def plot(
         Kind, typer.Option("--format", help="Of the files in a folder; a file's suffix says its.")
     ] = Kind.png,
     changes: Changes = NO_CHANGES,
-    landmarks: Landmarks = 401,
-    path: PathOption = PathKind.geodesic,
-    planes: PlanesOption = Planes.axis,
-    trailing_edge: EdgeOption = "2mm",
+    landmarks: Landmarks = LANDMARKS,
+    making: Making = MAKING,
 ) -> None:
     """Draw diagrams of a blade: planform, sections, path on the Grassmannian, curvature, thickness.
 
@@ -230,7 +217,7 @@ def plot(
             f"output: got {output} for {len(chosen)} diagrams, must be a folder or a .pdf; or "
             "choose one with --what"
         )
-    made = read_blade(blade, landmarks, path, planes, trailing_edge)
+    made = making.blade(blade, landmarks)
     shown, baseline = (changes.applied(made), made) if changes.asked else (made, None)
     with progress_bar() as progress:
         if single and output.suffix.lower() == ".pdf":

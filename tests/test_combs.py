@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen import combs
-from bladegen.cli_options import Planes, read_blade
+from bladegen.cli_options import Making
 from bladegen.errors import BladegenError, ExportError
 from bladegen.landmarks import contour
 from strategies import ellipse
@@ -47,7 +47,7 @@ def test_an_unfaired_blade_is_as_rough_as_given():
 
 def test_fairing_is_asked_for_by_its_tolerance_or_off():
     def moved(fairing):
-        made = read_blade("iea15mw", 51, "geodesic", Planes.axis, "2mm", fairing)
+        made = Making(fairing=fairing).blade("iea15mw", 51)
         return max(curve.moved for curve in made.contours)
 
     assert moved("off") == 0.0

@@ -24,6 +24,7 @@ AROUND = 9  # points whose median scatter bounds the middle one's move
 FACTOR = 3.0  # of the scatter's median: a rounding error is at most 2.4 times its median
 HELD = 1e-14  # chord; the bound of points that do not scatter, and of the ends
 ITERATIONS = 40  # of the weights; bounds are met to a few per cent after 20
+WITHIN = 1.0 - 1e-9  # of the tolerance, so that rounding does not pass it
 SOFTEST = 1e-13  # of the stiffness; lesser weights leave the equations singular
 
 
@@ -60,7 +61,7 @@ def fair(points: Array, tolerance: float = TOLERANCE) -> Array:
     if len(points) < 2 * NEIGHBOURS + 3:
         return points
     t = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    bound = np.minimum(tolerance, FACTOR * _scatter(t, points))
+    bound = np.minimum(WITHIN * tolerance, FACTOR * _scatter(t, points))
     bound = np.maximum(bound, HELD)
     bound[[0, -1]] = HELD
     rows = _third_differences(t)

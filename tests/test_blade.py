@@ -32,13 +32,26 @@ def unit_chord(blade):
 
 @given(definitions(thickness=False), PATHS)
 def test_a_blade_passes_through_its_stations(definition, path):
-    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    blade = Blade.from_definition(definition, landmarks=N, path=path, fairing=None)
     assert_allclose(blade.profiles(blade.eta), unit_chord(blade), atol=1e-11)
+
+
+@given(definitions(thickness=False), PATHS)
+def test_a_faired_blade_passes_through_its_faired_stations(definition, path):
+    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    faired = np.stack([curve.landmarks(blade.u) for curve in blade.contours])
+    faired = faired / SectionSplines(blade.u).fit(faired).chord[:, None, None]
+    assert_allclose(blade.profiles(blade.eta), faired, atol=1e-11)
+    along = np.gradient(faired, axis=1)
+    away = unit_chord(blade) - faired
+    off = along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]
+    off /= np.linalg.norm(along, axis=-1)
+    assert np.abs(off).max() < 3e-5  # between points their splines differ by more than at them
 
 
 @given(definitions(thickness=True), PATHS)
 def test_with_a_thickness_distribution_up_to_a_stretch(definition, path):
-    blade = Blade.from_definition(definition, landmarks=N, path=path)
+    blade = Blade.from_definition(definition, landmarks=N, path=path, fairing=None)
     profiles, airfoils = blade.profiles(blade.eta), unit_chord(blade)
     X, Y = affine.standardise(profiles)[0], affine.standardise(airfoils)[0]
     assert_allclose(X @ X.mT, Y @ Y.mT, atol=1e-10)
@@ -138,7 +151,8 @@ def test_reference_blades_meet_the_design(name, path):
     curves = SectionSplines(blade.u).fit(blade.profiles(eta))
     assert_allclose(curves.chord, 1.0, atol=1e-9)
     assert_allclose(curves.relative_thickness, definition.relative_thickness(eta), atol=1e-9)
-    plain = Blade.from_definition(replace(definition, relative_thickness=None), path=path)
+    bare = replace(definition, relative_thickness=None)
+    plain = Blade.from_definition(bare, path=path, fairing=None)
     assert_allclose(plain.profiles(plain.eta), unit_chord(plain), atol=1e-9)
 
 

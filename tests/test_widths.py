@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
@@ -35,6 +35,7 @@ def test_a_wedge_gives_the_width_and_keeps_chord_thickness_and_nose(xy, width):
 
 
 @PATHS
+@settings(max_examples=8)
 @given(definitions())
 def test_widths_stay_between_those_of_the_stations(path, definition):
     blade = bg.Blade.from_definition(definition, landmarks=101, path=path)
@@ -46,6 +47,7 @@ def test_widths_stay_between_those_of_the_stations(path, definition):
 
 
 @PATHS
+@settings(max_examples=8)
 @given(definitions())
 def test_stations_stay_as_the_path_has_them(path, definition):
     blade = bg.Blade.from_definition(definition, landmarks=101, path=path)

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from bladegen.families import Family, family
     from bladegen.pga import ShapeSpace
     from bladegen.readers import bundled, read
+    from bladegen.writers import write, write_airfoil
 
 __version__ = "0.1.0"
 
@@ -49,6 +50,8 @@ _HOME = {
     "export": "exporters",
     "family": "families",
     "read": "readers",
+    "write": "writers",
+    "write_airfoil": "writers",
 }
 
 __all__ = [
@@ -70,6 +73,8 @@ __all__ = [
     "export",
     "family",
     "read",
+    "write",
+    "write_airfoil",
 ]
 
 

@@ -29,7 +29,7 @@ DEFAULT_FORMATS = ("step", "stl", "glb", "png")
 LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk", "h5py")
 SPANWISE_ROWS = 60  # in the report; the CSV file holds all
 FROM_FILE = ("solids", "faces", "valid", "closed", "area_m2", "bounds_m")
-_SOLIDS, _MESHES = tuple(cad_files.READERS), (".stl", ".glb", ".ply", ".obj", ".3mf")
+_MESHES = (".stl", ".glb", ".ply", ".obj", ".3mf")  # what trimesh reads
 
 
 def build(
@@ -100,7 +100,7 @@ def build(
                 miss, made = error, exporters.aside(path)
         ledger.note(made)
         with ledger.timed("measuring the files"):
-            _measure(report, products, path.suffix, made)
+            _measure(report, products, exporters.format_of(path).kind, made)
     if rotor is not None:
         report["rotor"] = asdict(rotor)
         with ledger.writing(target / f"{stem}.rotor.step", "rotor") as temporary:
@@ -116,6 +116,7 @@ def build(
     some = slice(None, None, max(1, options.stations // SPANWISE_ROWS))
     report["spanwise"] = {name: values[some].tolist() for name, values in columns.items()}
     report["files"] = ledger.files
+    report["remarks"] = [str(remark) for remark in products.remarks]
     report["seconds"] = {stage: round(spent, 3) for stage, spent in ledger.seconds.items()}
     with replacing(report_path(target, blade.name)) as temporary:
         temporary.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
@@ -155,16 +156,18 @@ class _Ledger:
         self.files.append({"name": path.name, "bytes": path.stat().st_size})
 
 
-def _measure(report: dict[str, Any], products: exporters.Products, suffix: str, path: Path) -> None:
-    """Add what a file's format gives to measure: a solid, a grid or triangles."""
-    if suffix in _SOLIDS:
+def _measure(
+    report: dict[str, Any], products: exporters.Products, kind: exporters.Kind, path: Path
+) -> None:
+    """Add what a file of that kind gives to measure."""
+    if kind is exporters.Kind.solid:
         products.progress("reading the solid again")
         report["solid"] = _solid(products, path, report["figures"]["volume_m3"])
-    elif suffix in exporters.GRIDS:
+    elif kind is exporters.Kind.grid:
         report.setdefault("grid", grid_figures(products.grid))
-    elif suffix in _MESHES:
+    elif path.suffix in _MESHES:
         figures = checks.mesh_figures(mesh.read(path))
-        report.setdefault("meshes", {})[suffix.lstrip(".")] = figures
+        report.setdefault("meshes", {})[path.suffix.lstrip(".")] = figures
 
 
 def report_path(target: Path, name: str) -> Path:

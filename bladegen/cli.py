@@ -9,6 +9,7 @@ import typer
 
 from bladegen import __version__, cli_space
 from bladegen.cli_check import check
+from bladegen.cli_convert import convert
 from bladegen.cli_family import family
 from bladegen.cli_options import (
     LANDMARKS,
@@ -46,6 +47,7 @@ app = typer.Typer(
 
 app.add_typer(cli_space.app, name="space")
 app.command()(check)
+app.command()(convert)
 app.command()(family)
 app.command(epilog=KEYS)(preview)
 app.command()(plot)

@@ -23,7 +23,9 @@ __all__ = [
     "Json",
     "Landmarks",
     "Making",
+    "Polars",
     "Producing",
+    "Reynolds",
     "grouped",
 ]
 
@@ -74,8 +76,9 @@ Formats = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
-        help="step iges brep stl glb png ply obj 3mf vtp p3d fmt cgns vtu sections.csv; may be "
-        "repeated.",
+        help="CAD: step iges brep; triangles: stl glb ply obj 3mf vtp; grids: p3d fmt cgns vtu; "
+        "definitions: yaml (windIO 2) dat (OpenFAST) htc (HAWC2) csv xlsx; sections.csv; png. "
+        "May be repeated.",
     ),
 ]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
@@ -88,6 +91,19 @@ SideSpacing = Annotated[
 ]
 SpanSpacing = Annotated[
     float, typer.Option(help="Cell at that end over the length.", rich_help_panel=GRIDS)
+]
+
+
+Polars = Annotated[
+    str | None,
+    typer.Option(
+        metavar="estimate|keep|none",
+        help="Polars of windIO files: by NeuralFoil for shapes without their own (default of "
+        "perturbed blades if the extra aero is installed), as they are, or none.",
+    ),
+]
+Reynolds = Annotated[
+    float | None, typer.Option(help="Of estimated polars; from the file or the chord if not given.")
 ]
 
 
@@ -166,6 +182,8 @@ class Producing:
     te_spacing: SideSpacing = 1e-3
     tip_spacing: SpanSpacing = 2e-4
     root_spacing: SpanSpacing = 0.01
+    polars: Polars = None
+    reynolds: Reynolds = None
 
     def options(self) -> Any:
         """Return how products are made."""
@@ -181,6 +199,8 @@ class Producing:
             stations=self.stations,
             tip=tips[self.tip],
             unit=self.unit,
+            polars=self.polars,
+            reynolds=self.reynolds,
             spacing=Spacing(
                 around=self.grid_around,
                 along=self.grid_along,

@@ -15,6 +15,7 @@ import numpy as np
 
 from bladegen.arrays import Array, ArrayLike, readonly
 from bladegen.errors import DefinitionError, Finding
+from bladegen.polars import Polar
 
 __all__ = [
     "Airfoil",
@@ -62,11 +63,17 @@ class Airfoil:
         Points in chords, trailing edge -> leading edge -> trailing edge, either side first.
     relative_thickness : float, optional
         Nominal thickness over chord, as the file states it.
+    polars : tuple of Polar
+        What is known of its aerodynamics; it shapes nothing.
+    aerodynamic_center : float, optional
+        Where polars are taken about, from the leading edge over the chord.
     """
 
     name: str
     coordinates: Array
     relative_thickness: float | None = None
+    polars: tuple[Polar, ...] = ()
+    aerodynamic_center: float | None = None
 
     def __post_init__(self) -> None:
         points = readonly(self.coordinates)
@@ -182,6 +189,7 @@ class Rotor:
     diameter: float | None = None
     cone: float | None = None
     tilt: float | None = None
+    hub_drag: float | None = None
 
 
 @dataclass(frozen=True)
@@ -210,8 +218,8 @@ class BladeDefinition:
         Thickness over chord; where given it rules between stations.
     rotor : Rotor
         Facts on the rotor.
-    description, source : str
-        Free text; the file it was read from.
+    description, source, format : str
+        Free text; the file it was read from, and in which format that is.
     findings : tuple of Finding
         What was mended or looks odd.
     """
@@ -228,6 +236,7 @@ class BladeDefinition:
     rotor: Rotor = Rotor()
     description: str = ""
     source: str = ""
+    format: str = ""
     findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:

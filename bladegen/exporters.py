@@ -7,22 +7,23 @@ at all.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from bladegen import cad, cad_files, grid, grid_files, mesh, preview
+from bladegen import cad, cad_files, grid, grid_files, mesh, preview, writers
 from bladegen.arrays import Array
 from bladegen.blade import Blade
-from bladegen.errors import ExportError, ToleranceError
+from bladegen.errors import ExportError, Finding, ToleranceError
 from bladegen.files import replacing
 from bladegen.tips import Tip, flat_tip
 
 __all__ = [
     "FORMATS",
-    "GRIDS",
     "UNITS",
     "Format",
+    "Kind",
     "Options",
     "Products",
     "aside",
@@ -60,6 +61,8 @@ class Options:
         Solids: sections to begin with, such as those of a blade that is alike.
     spacing : Spacing
         Grids: how many points, and cell sizes where it matters.
+    polars, reynolds : optional
+        Definitions: where polars are from, as for `writers.write`.
     """
 
     tolerance: float = cad.DEFAULT_TOLERANCE
@@ -71,6 +74,8 @@ class Options:
     timestamp: str | None = None
     spans: Array | None = None
     spacing: grid.Spacing = field(default_factory=grid.Spacing)
+    polars: str | None = None
+    reynolds: float | None = None
 
     def __post_init__(self) -> None:
         if self.unit not in UNITS:
@@ -93,6 +98,7 @@ class Products:
     blade: Blade
     options: Options = field(default_factory=Options)
     progress: Callable[[str], None] = lambda _: None
+    remarks: list[Finding] = field(default_factory=list)  # what a format cannot hold
 
     @cached_property
     def solid(self) -> cad.Solid:
@@ -122,10 +128,26 @@ class Products:
 Writer = Callable[[Products, Path], None]
 
 
+class Kind(StrEnum):
+    """What a file holds, and so what can be measured on it."""
+
+    solid = "solid"
+    triangles = "triangles"
+    grid = "grid"
+    definition = "definition"
+    table = "table"
+    picture = "picture"
+
+
 @dataclass(frozen=True)
 class Format:
-    """A file format: what it is, and how a blade's products are written to it."""
+    """A file format: what it is, and how a blade's products are written to it.
 
+    Writers get a temporary path; those of definitions the final one, since they write companions
+    named after it and replace all by themselves.
+    """
+
+    kind: Kind
     description: str
     write: Writer
 
@@ -207,29 +229,62 @@ def _write_png(products: Products, path: Path) -> None:
     preview.picture(products.blade, path)
 
 
+def _write_definition(products: Products, path: Path) -> None:
+    options = products.options
+    said = writers.write(
+        products.blade,
+        path,
+        polars=options.polars,
+        reynolds=options.reynolds,
+        progress=products.progress,
+    )
+    products.remarks.extend(said)
+
+
 FORMATS = {
-    ".step": Format("STEP AP242 (or AP214), one closed solid with named faces, mm", _write_step),
-    ".stp": Format("the same as .step", _write_step),
-    ".iges": Format("IGES 5.3, one closed solid, mm", _write_iges),
-    ".igs": Format("the same as .iges", _write_iges),
-    ".brep": Format("OCCT's own BREP, one closed solid, mm", _write_brep),
-    ".stl": Format("STL, binary triangles, m (or mm)", _write_stl),
-    ".glb": Format("glTF binary, triangles for the web, m", _write_glb),
-    ".ply": Format("PLY, binary triangles, m (or mm)", _write_ply),
-    ".obj": Format("Wavefront OBJ, triangles, m (or mm)", _write_obj),
-    ".3mf": Format("3MF, triangles for printing, mm", _write_3mf),
-    ".vtp": Format("VTK poly data, triangles for ParaView, m (or mm)", _write_vtp),
-    ".p3d": Format("PLOT3D multi-block grid, Fortran unformatted, m (or mm)", _write_p3d),
-    ".fmt": Format("PLOT3D multi-block grid, text, m (or mm)", _write_fmt),
-    ".cgns": Format("CGNS structured grid with connectivity and families, m", _write_cgns),
-    ".vtu": Format("VTK unstructured quadrilaterals of the grid, m (or mm)", _write_vtu),
-    ".csv": Format("sections as a table: eta, landmark, u, x, y, z, m", _write_csv),
-    ".png": Format("picture of the blade", _write_png),
+    ".step": Format(
+        Kind.solid, "STEP AP242 (or AP214), one closed solid with named faces, mm", _write_step
+    ),
+    ".stp": Format(Kind.solid, "the same as .step", _write_step),
+    ".iges": Format(Kind.solid, "IGES 5.3, one closed solid, mm", _write_iges),
+    ".igs": Format(Kind.solid, "the same as .iges", _write_iges),
+    ".brep": Format(Kind.solid, "OCCT's own BREP, one closed solid, mm", _write_brep),
+    ".stl": Format(Kind.triangles, "STL, binary triangles, m (or mm)", _write_stl),
+    ".glb": Format(Kind.triangles, "glTF binary, triangles for the web, m", _write_glb),
+    ".ply": Format(Kind.triangles, "PLY, binary triangles, m (or mm)", _write_ply),
+    ".obj": Format(Kind.triangles, "Wavefront OBJ, triangles, m (or mm)", _write_obj),
+    ".3mf": Format(Kind.triangles, "3MF, triangles for printing, mm", _write_3mf),
+    ".vtp": Format(Kind.triangles, "VTK poly data, triangles for ParaView, m (or mm)", _write_vtp),
+    ".p3d": Format(
+        Kind.grid, "PLOT3D multi-block grid, Fortran unformatted, m (or mm)", _write_p3d
+    ),
+    ".fmt": Format(Kind.grid, "PLOT3D multi-block grid, text, m (or mm)", _write_fmt),
+    ".cgns": Format(
+        Kind.grid, "CGNS structured grid with connectivity and families, m", _write_cgns
+    ),
+    ".vtu": Format(Kind.grid, "VTK unstructured quadrilaterals of the grid, m (or mm)", _write_vtu),
+    ".sections.csv": Format(
+        Kind.table, "sections as a table: eta, landmark, u, x, y, z, m", _write_csv
+    ),
+    ".yaml": Format(
+        Kind.definition, "windIO 2, a perturbed blade with airfoils of its own", _write_definition
+    ),
+    ".dat": Format(
+        Kind.definition,
+        "OpenFAST, an AeroDyn blade file and airfoil coordinates",
+        _write_definition,
+    ),
+    ".htc": Format(
+        Kind.definition, "HAWC2, c2_def and ae file, airfoils by thickness", _write_definition
+    ),
+    ".csv": Format(
+        Kind.definition, "spanwise table, airfoils in a folder beside it", _write_definition
+    ),
+    ".xlsx": Format(
+        Kind.definition, "workbook in the layout of the IEA tabular files", _write_definition
+    ),
+    ".png": Format(Kind.picture, "picture of the blade", _write_png),
 }
-
-
-SOLID_WRITERS = (_write_step, _write_iges, _write_brep)
-GRIDS = (".p3d", ".fmt", ".cgns", ".vtu")
 
 
 def format_of(path: Path) -> Format:
@@ -240,10 +295,10 @@ def format_of(path: Path) -> Format:
     ExportError
         If no format has that suffix.
     """
-    suffix = path.suffix.lower()
-    if suffix not in FORMATS:
-        raise ExportError(f"{path}: suffix {path.suffix!r}, allowed are {', '.join(FORMATS)}")
-    return FORMATS[suffix]
+    for suffix in sorted(FORMATS, key=len, reverse=True):  # .sections.csv before .csv
+        if path.name.lower().endswith(suffix):
+            return FORMATS[suffix]
+    raise ExportError(f"{path}: suffix {path.suffix!r}, allowed are {', '.join(FORMATS)}")
 
 
 def export(blade: Blade, path: str | Path, **options: Any) -> Path:
@@ -284,9 +339,9 @@ def aside(path: Path) -> Path:
 
 def write(products: Products, path: Path) -> None:
     """Write one file from products that may serve several."""
-    writer = format_of(path).write
+    row = format_of(path)
     target, miss = path, None
-    if writer in SOLID_WRITERS:
+    if row.kind is Kind.solid:
         solid, tolerance = products.solid, products.options.tolerance
         if products.options.sections is None and solid.deviation.maximum > tolerance:
             target = aside(path)
@@ -295,7 +350,10 @@ def write(products: Products, path: Path) -> None:
                 f"eta = {solid.deviation.eta:.4f}, allowed is {tolerance * 1e3:g} mm; kept as "
                 f"{target.name}; more landmarks than {len(products.blade.u)} may help"
             )
-    with replacing(target) as temporary:
-        writer(products, temporary)
+    if row.kind is Kind.definition:
+        row.write(products, target)
+    else:
+        with replacing(target) as temporary:
+            row.write(products, temporary)
     if miss is not None:
         raise miss

@@ -33,7 +33,7 @@ def _feed(digest: Any, value: Any) -> None:
     if is_dataclass(value) and not isinstance(value, type):
         digest.update(type(value).__name__.encode())
         for entry in fields(value):
-            if entry.name not in ("source", "findings", "description", "about"):
+            if entry.name not in ("source", "format", "findings", "description", "about"):
                 digest.update(entry.name.encode())
                 _feed(digest, getattr(value, entry.name))
     elif isinstance(value, np.ndarray):

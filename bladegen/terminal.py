@@ -82,7 +82,7 @@ def print_summary(folder: Path, name: str) -> None:
     rows = [[str(folder / f["name"]), f"{f['bytes'] / 1e6:.1f} MB"] for f in report["files"]]
     rows.append([str(path), "all figures"])
     print_table(["file", "size"], rows)
-    print_findings(report["figures"]["findings"])
+    print_findings(report["figures"]["findings"] + report["remarks"])
 
 
 def print_space(space: Any) -> None:

@@ -1,46 +1,80 @@
 """Blade definitions from files: one module a format, one row in `FORMATS`.
 
-A new YAML layout is a module with two functions: `recognises` tells its documents from
-others, `read` makes the definition from a `Node`, which notes every problem of the file.
+A new format is a module with two functions: `recognises` tells its files from others of the
+same suffix, by a bounded look; `read` makes the definition and notes every problem of the file
+in `Notes`, so that a user hears of all of them at once.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from bladegen.definition import BladeDefinition
 from bladegen.errors import DefinitionError, FileError
-from bladegen.readers import windio1, windio2
-from bladegen.readers.document import Node, Notes
-from bladegen.readers.yaml_file import YamlError, load_yaml
+from bladegen.readers import hawc2, numad, openfast, spanwise_table, turbine_file
+from bladegen.readers.document import Notes
 
 __all__ = ["FORMATS", "SUFFIXES", "Format", "bundled", "read"]
 
 
 @dataclass(frozen=True)
 class Format:
-    """A layout of YAML documents: what it is, how to tell it, and how to read it."""
+    """A file format.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    mark : str
+        What tells its files from others, in words.
+    suffixes : tuple of str
+        Of its files, lower case.
+    recognises : callable
+        Tells whether a file of one of the suffixes is of this format.
+    read : callable
+        From a file, the notes to make on it, and a folder of airfoil files for formats that
+        only name their airfoils (None: the format's own place) to the definition; None if
+        there are problems.  An unset `BladeDefinition.format` becomes `name`.
+    """
 
     name: str
     mark: str
-    recognises: Callable[[object], bool]
-    read: Callable[[Node, Path], BladeDefinition | None]
+    suffixes: tuple[str, ...]
+    recognises: Callable[[Path], bool]
+    read: Callable[[Path, Notes, Path | None], BladeDefinition | None]
 
 
 FORMATS = (
-    Format("windIO 2", "components.blade.outer_shape", windio2.recognises, windio2.read),
-    Format("windIO 1", "components.blade.outer_shape_bem", windio1.recognises, windio1.read),
+    Format(
+        "windIO",
+        turbine_file.MARK,
+        turbine_file.SUFFIXES,
+        turbine_file.recognises,
+        turbine_file.read,
+    ),
+    Format("OpenFAST", openfast.MARK, openfast.SUFFIXES, openfast.recognises, openfast.read),
+    Format("HAWC2", hawc2.MARK, hawc2.SUFFIXES, hawc2.recognises, hawc2.read),
+    Format("NuMAD", numad.MARK, numad.SUFFIXES, numad.recognises, numad.read),
+    Format(
+        "spanwise table",
+        spanwise_table.MARK,
+        spanwise_table.SUFFIXES,
+        spanwise_table.recognises,
+        spanwise_table.read,
+    ),
 )
-SUFFIXES = (".yaml", ".yml", ".json")
+SUFFIXES = tuple(dict.fromkeys(suffix for row in FORMATS for suffix in row.suffixes))
 
 
-def read(source: str | Path) -> BladeDefinition:
+def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefinition:
     """Read a blade definition.
 
     Parameters
     ----------
     source : str or Path
-        The name of a bundled blade (`bundled`), or a path to a windIO 1 or 2 file.
+        The name of a bundled blade (`bundled`), or a path to a file in one of `FORMATS`.
+    airfoils : str or Path, optional
+        A folder of airfoil files, for formats that only name their airfoils.
 
     Raises
     ------
@@ -48,15 +82,17 @@ def read(source: str | Path) -> BladeDefinition:
         If there is no such blade or file, or with all problems of the file at once.
     """
     path = _path(source)
+    notes = Notes()
     try:
-        document, findings = load_yaml(path)
-        notes = Notes(findings=findings)
-        definition = _parse(Node(document, "", notes), path)
-    except (YamlError, DefinitionError) as error:
+        row = _recognised(path)
+        definition = row.read(path, notes, None if airfoils is None else Path(airfoils))
+    except DefinitionError as error:
         raise FileError(str(source), [str(error)]) from None
+    except FileError as error:
+        raise FileError(str(source), error.problems) from None
     if definition is None or notes.problems:
         raise FileError(str(source), notes.shown())
-    return definition
+    return replace(definition, format=definition.format or row.name)
 
 
 def bundled() -> tuple[str, ...]:
@@ -91,13 +127,11 @@ def _path(source: str | Path) -> Path:
     return path
 
 
-def _parse(root: Node, path: Path) -> BladeDefinition | None:
-    if root.value is None:
-        root.problem("is empty, must hold a turbine in the layout of windIO")
-        return None
-    for layout in FORMATS:
-        if layout.recognises(root.value):
-            return layout.read(root, path)
-    marks = " or ".join(f"{layout.mark} ({layout.name})" for layout in FORMATS)
-    root.problem(f"holds no blade that is known, must hold {marks}")
-    return None
+def _recognised(path: Path) -> Format:
+    """Return the first format of the file's suffix that recognises it."""
+    rows = [row for row in FORMATS if path.suffix.lower() in row.suffixes]
+    for row in rows:
+        if row.recognises(path):
+            return row
+    marks = " or ".join(f"{row.mark} ({row.name})" for row in rows)
+    raise FileError(str(path), [f"holds no blade that is known, must hold {marks}"])

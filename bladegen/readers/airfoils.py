@@ -12,13 +12,15 @@ from bladegen.arrays import Array
 from bladegen.crossing import first_crossing
 from bladegen.definition import MAX_AIRFOIL_POINTS, MIN_AIRFOIL_POINTS, Airfoil
 from bladegen.readers.document import Node, Range
+from bladegen.readers.polars import polars
 
-__all__ = ["airfoils", "thickness"]
+__all__ = ["airfoil", "airfoils", "thickest", "thickness"]
 
 X = Range(-0.5, 1.5, "chords")
 Y = Range(-1.0, 1.0, "chords")
 CHORD = Range(0.9, 1.1)  # extent in x; the DTU 10 MW's cylinder is cut at 0.998
 THICKNESS = Range(0.0, 1.05, "of the chord", above=True)
+CENTRE = Range(0.0, 1.0, "of the chord")
 TRAILING_EDGE = 0.9  # of the extent in x: a contour starts and ends behind it
 REPEATED = 1e-9  # chords between points that are one
 DISAGREEMENT = 0.01  # of the thickness: more is a finding
@@ -50,7 +52,7 @@ def airfoils(library: Node, wanted: Iterable[tuple[str, Node]], key: str) -> dic
         elif name not in found:
             if name in twice:
                 twice[name].problem(f"name {name!r} is that of {known[name].path}, must be unique")
-            found[name] = _airfoil(name, known[name], key)
+            found[name] = airfoil(name, known[name], key)
     read = {name: airfoil for name, airfoil in found.items() if airfoil is not None}
     clockwise = [name for name, airfoil in read.items() if _area(airfoil.coordinates) < 0]
     if 0 < len(clockwise) < len(read):
@@ -65,10 +67,17 @@ def thickness(points: Array) -> float:
 
     Good to a fraction of a percent, which is what findings need.
     """
-    return float(np.max(np.abs(_sides(points)[0])))
+    return float(np.max(np.abs(_sides(points)[1])))
 
 
-def _airfoil(name: str, node: Node, key: str) -> Airfoil | None:
+def thickest(points: Array) -> float:
+    """Return the x at which the vertical distance between a contour's sides is largest."""
+    x, gap, _ = _sides(points)
+    return float(x[np.argmax(np.abs(gap))])
+
+
+def airfoil(name: str, node: Node, key: str) -> Airfoil | None:
+    """Read one airfoil; `key` is where it states its thickness."""
     points = _contour(node["coordinates"])
     stated = node[key].number(THICKNESS) if node.has(key) else None
     if points is None:
@@ -76,7 +85,10 @@ def _airfoil(name: str, node: Node, key: str) -> Airfoil | None:
     measured = thickness(points)
     if stated is not None and abs(measured - stated) > DISAGREEMENT * stated:
         node[key].finding(f"{name} is stated {stated:g} thick; its coordinates give {measured:.4g}")
-    return Airfoil(name, points, stated)
+    centre = None
+    if node.has("aerodynamic_center"):
+        centre = node["aerodynamic_center"].number(CENTRE)
+    return Airfoil(name, points, stated, polars(node), centre)
 
 
 def _contour(node: Node) -> Array | None:
@@ -117,7 +129,7 @@ def _fault(points: Array) -> str | None:
             f"runs from x = {x[0]:g} to x = {x[-1]:g}, must start and end at the trailing edge "
             "(x near 1)"
         )
-    gap, single = _sides(points)
+    _, gap, single = _sides(points)
     apart = single and bool(np.all(gap >= 0) or np.all(gap <= 0))
     crossing = None if apart else first_crossing(points)
     if crossing is not None:
@@ -133,8 +145,8 @@ def _fault(points: Array) -> str | None:
     return None
 
 
-def _sides(points: Array) -> tuple[Array, bool]:
-    """Return how far the first side lies above the second, and whether x tells it fully.
+def _sides(points: Array) -> tuple[Array, Array, bool]:
+    """Return x, how far the first side lies above the second there, and whether x tells it fully.
 
     It does where x runs strictly one way on each side: then the sides cross only if the
     distance changes its sign, and the search for crossings can be spared.
@@ -146,7 +158,8 @@ def _sides(points: Array) -> tuple[Array, bool]:
     if not single:
         first, second = (side[np.argsort(x[side], kind="stable")] for side in (first, second))
     inside = x[x <= min(x[first[-1]], x[second[-1]])]
-    return np.interp(inside, x[first], y[first]) - np.interp(inside, x[second], y[second]), single
+    above = np.interp(inside, x[first], y[first]) - np.interp(inside, x[second], y[second])
+    return inside, above, single
 
 
 def _area(points: Array) -> float:

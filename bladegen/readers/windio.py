@@ -30,6 +30,7 @@ FRACTION_OF_CHORD = Range(-1.0, 2.0, "of the chord")
 RELATIVE_THICKNESS = Range(0.0, 1.05, "of the chord", above=True)
 DIAMETER = Range(0.0, 1000.0, "m")
 BLADES = Range(1, 10)
+DRAG = Range(0.0, 2.0)
 
 
 @dataclass(frozen=True)
@@ -222,4 +223,5 @@ def _rotor(root: Node, layout: Layout) -> Rotor:
         diameter=number(DIAMETER, "assembly", "rotor_diameter") or None,
         cone=None if cone is None else layout.angle * cone,
         tilt=None if tilt is None else layout.angle * tilt,
+        hub_drag=number(DRAG, "components", "hub", "cd"),
     )

@@ -1,0 +1,69 @@
+"""How much of a blade each file format keeps: out, in again, and the surfaces compared.
+
+    python benchmarks/formats.py
+
+Largest distance between the sections of both blades at 121 spans, each to the other's polygon of
+401 landmarks; the swept blade is the NREL 5 MW with 4 m of sweep at its tip.
+"""
+
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import bladegen as bg
+from bladegen.arrays import Array
+from bladegen.definition import BladeDefinition, Distribution
+
+FILES = ("blade.csv", "blade.xlsx", "blade.htc", "blade.dat", "blade.yaml")
+SPANS = np.linspace(0.0, 1.0, 121)
+
+
+def swept() -> BladeDefinition:
+    """The NREL 5 MW, swept back."""
+    plain = bg.read("nrel5mw")
+    sweep = Distribution(np.linspace(0.0, 1.0, 5), np.array([0.0, 0.1, 0.5, 2.0, 4.0]))
+    return replace(plain, name="nrel5mw, swept", axis=replace(plain.axis, y=sweep))
+
+
+def farthest(points: Array, polygon: Array) -> float:
+    """The largest distance from points (n, 3) to a polygon (m, 3)."""
+    side = np.diff(polygon, axis=0)
+    length = np.maximum(np.einsum("mk,mk->m", side, side), 1e-30)
+    to = points[:, None] - polygon[:-1]
+    along = np.clip(np.einsum("nmk,mk->nm", to, side) / length, 0.0, 1.0)
+    return float(np.sqrt(((to - along[..., None] * side) ** 2).sum(axis=-1).min(axis=1)).max())
+
+
+def off(one: BladeDefinition, other: BladeDefinition) -> float:
+    """How far two blades lie apart at equal z [mm]."""
+    fine = np.linspace(0.0, 1.0, 20_001)
+    at = np.interp(one.axis.z(SPANS), other.axis.z(fine), fine)
+    first = bg.Blade.from_definition(one).sections(SPANS)
+    second = bg.Blade.from_definition(other).sections(at)
+    pairs = [*zip(first, second, strict=True), *zip(second, first, strict=True)]
+    return 1e3 * max(farthest(mine[::4], yours) for mine, yours in pairs)
+
+
+def main() -> None:
+    blades = [*map(bg.read, bg.bundled()), swept()]
+    print(f"{'file':12} {'blade':16} {'mm':>8} {'rows':>6} {'write s':>8} {'read s':>8}")
+    for file in FILES:
+        for first in blades:
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / file
+                start = time.perf_counter()
+                bg.write(first, path)
+                written = time.perf_counter()
+                second = bg.read(path)
+                done = time.perf_counter()
+                print(
+                    f"{file:12} {first.name:16} {off(first, second):8.3f} "
+                    f"{len(second.chord.grid):6d} {written - start:8.2f} {done - written:8.2f}"
+                )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,169 @@
+"""Airfoil shapes that stand in files of their own beside a blade file.
+
+A folder of coordinate files (Selig or Lednicer), with or without `index.csv` that bladegen
+writes: its columns are airfoil, file, relative_thickness and, where the blade file cannot say it,
+span_fraction.  Without it an airfoil is known by its file's name, its thickness by its coordinates.
+"""
+
+import csv
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from bladegen.definition import Airfoil, Station
+from bladegen.errors import FileError
+from bladegen.files import safe_stem
+from bladegen.readers.airfoil_files import SUFFIXES, read_airfoil
+from bladegen.readers.airfoils import airfoil, thickness
+from bladegen.readers.document import Node, Notes
+from bladegen.readers.text_file import natural, number, read_lines, referred
+
+__all__ = [
+    "INDEX",
+    "INDEX_COLUMNS",
+    "beside",
+    "companion",
+    "files_of",
+    "placed_airfoils",
+    "shapes",
+    "thick_airfoils",
+]
+
+INDEX = "index.csv"
+INDEX_COLUMNS = ("airfoil", "file", "relative_thickness", "span_fraction")
+MAX_FILES = 2000
+MAX_NAMES = 10  # that a message lists
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """An airfoil of a folder: its name and file, its thickness and place if the index tells."""
+
+    name: str
+    path: Path
+    thickness: float | None = None
+    eta: float | None = None
+
+
+def companion(path: Path) -> Path:
+    """Return the folder for the airfoils of a blade file: one for each file of a blade."""
+    return path.with_name(f"{path.stem}_{path.suffix.lstrip('.').lower()}_airfoils")
+
+
+def beside(path: Path, given: Path | None, notes: Notes) -> Path | None:
+    """Return the folder of a blade file's airfoils: the one given, or that beside the file.
+
+    That is ``<stem>_<suffix>_airfoils``, as bladegen writes it (`companion`), or ``airfoils``.
+    """
+    if given is not None:
+        if given.is_dir():
+            return given
+        notes.problems.append(f"airfoils: {given} is no folder")
+        return None
+    places = [companion(path), path.with_name("airfoils"), path.with_name("Airfoils")]
+    for place in places:
+        if place.is_dir():
+            return place
+    notes.problems.append(
+        f"airfoils: this file holds no shapes, and there is no folder {places[0].name} or "
+        f"{places[1].name} beside it; name one (--airfoils DIR)"
+    )
+    return None
+
+
+def files_of(folder: Path, suffixes: tuple[str, ...] = SUFFIXES) -> list[Path]:
+    """Return a folder's files of given suffixes in the order of their names and numbers."""
+    try:
+        found = [path for path in folder.iterdir() if path.suffix.lower() in suffixes]
+    except OSError as error:
+        raise FileError(str(folder), [f"cannot be read: {error.strerror}"]) from None
+    if len(found) > MAX_FILES:
+        raise FileError(str(folder), [f"holds {len(found)} files, allowed are {MAX_FILES}"])
+    return sorted((path for path in found if path.name != INDEX and path.is_file()), key=natural)
+
+
+def shapes(folder: Path, wanted: Iterable[str], notes: Notes) -> dict[str, Airfoil]:
+    """Read the airfoils of given names from a folder; what is missing is a problem."""
+    entries = {entry.name: entry for entry in _entries(folder, notes)}
+    known = {_plain(name): entry for name, entry in entries.items()}
+    found = {}
+    for name in dict.fromkeys(wanted):
+        entry = entries.get(name) or known.get(_plain(name)) or known.get(_plain(safe_stem(name)))
+        if entry is None:
+            names = ", ".join(list(entries)[:MAX_NAMES]) or "none"
+            notes.problems.append(f"airfoil {name!r}: {folder.name} holds {names}")
+            continue
+        made = _airfoil(name, entry, notes)
+        if made is not None:
+            found[name] = made
+    return found
+
+
+def thick_airfoils(folder: Path, notes: Notes) -> list[tuple[float, Airfoil]]:
+    """Read all airfoils of a folder, each with its relative thickness."""
+    found = {}
+    for entry in _entries(folder, notes):
+        made = None if entry.name in found else _airfoil(entry.name, entry, notes)
+        if made is not None:
+            own = made.relative_thickness
+            found[entry.name] = (thickness(made.coordinates) if own is None else own, made)
+    if not found and not notes.problems:
+        notes.problems.append(f"airfoils: {folder} holds no airfoil files ({', '.join(SUFFIXES)})")
+    return list(found.values())
+
+
+def placed_airfoils(folder: Path, notes: Notes) -> tuple[Station, ...]:
+    """Read the stations that a folder's index tells; none if it does not place all of them."""
+    entries = _entries(folder, notes)
+    if not all(entry.eta is not None and 0 <= entry.eta <= 1 for entry in entries):
+        return ()
+    made: dict[str, Airfoil | None] = {}
+    for entry in entries:
+        if entry.name not in made:
+            made[entry.name] = _airfoil(entry.name, entry, notes)
+    stations = []
+    for entry in entries:
+        airfoil_ = made[entry.name]
+        if airfoil_ is not None and entry.eta is not None:
+            stations.append(Station(entry.eta, airfoil_))
+    return tuple(stations)
+
+
+def _airfoil(name: str, entry: _Entry, notes: Notes) -> Airfoil | None:
+    """Read one airfoil's file."""
+    try:
+        points = read_airfoil(entry.path)
+    except FileError as error:
+        notes.problems += [f"{entry.path.name}: {problem}" for problem in error.problems]
+        return None
+    value: dict[str, object] = {
+        "coordinates": {"x": points[:, 0].tolist(), "y": points[:, 1].tolist()}
+    }
+    if entry.thickness is not None:
+        value["relative_thickness"] = entry.thickness
+    return airfoil(name, Node(value, entry.path.name, notes), "relative_thickness")
+
+
+def _entries(folder: Path, notes: Notes) -> list[_Entry]:
+    """Return what a folder holds, by its index or by its files' names."""
+    index = folder / INDEX
+    if not index.is_file():
+        return [_Entry(path.stem, path) for path in files_of(folder)]
+    entries = []
+    rows = csv.DictReader(line for line in read_lines(index) if not line.startswith("#"))
+    for row in rows:
+        name, file, thick, eta = ((row.get(key) or "").strip() for key in INDEX_COLUMNS)
+        path = referred(file, [folder])
+        if path is None:
+            notes.problems.append(
+                f"{INDEX}, line {rows.line_num}, file: got {file[:40]!r}, must be a file of "
+                f"{folder.name}"
+            )
+            continue
+        entries.append(_Entry(name, path, number(thick), number(eta)))
+    return entries
+
+
+def _plain(name: str) -> str:
+    """Return a name without what people write differently: case, blanks, dashes."""
+    return "".join(letter for letter in name.lower() if letter.isalnum() or letter == ".")

@@ -1,0 +1,274 @@
+"""Spanwise tables: rows of cells, whatever file they stand in, to named columns in SI units.
+
+A header is a row with at least two known names.  Names are told by many spellings, units by
+brackets or by an ending: ``Chord [m]``, ``chord_m``, ``Twist (deg)``, ``r/R``.  What a header
+leaves open is taken as usual, and said.
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bladegen.arrays import Array
+from bladegen.errors import Finding
+from bladegen.readers.document import Notes, Range
+
+__all__ = ["Block", "Cell", "Column", "Rows", "blocks", "values_of"]
+
+Cell = str | float | None
+Rows = list[tuple[int, Sequence[Cell]]]
+
+LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2}
+ANGLES = {
+    **dict.fromkeys(("deg", "degree", "degrees", "°"), math.pi / 180.0),
+    **dict.fromkeys(("rad", "radian", "radians"), 1.0),
+}
+RATIOS = {
+    **dict.fromkeys(("-", "1", "x/c", "t/c", "r/r", "z/l", "frac", "fraction", "of chord"), 1.0),
+    **dict.fromkeys(("%", "percent", "pct", "%chord"), 0.01),
+}
+SHOWN = 5  # wrong cells of one column that are named one by one
+
+
+@dataclass(frozen=True)
+class Field:
+    """A quantity that a table may hold: its spellings, its units, what it may be in SI units."""
+
+    key: str
+    names: tuple[str, ...]
+    units: dict[str, float]
+    usual: str
+    allowed: Range
+
+
+FIELDS = (
+    Field(
+        "eta",
+        (
+            "eta",
+            "r r",
+            "z l",
+            "span fraction",
+            "spanwise position",
+            "normalized span",
+            "normalised span",
+            "blfract",
+            "grid",
+            "span",
+        ),
+        RATIOS,
+        "-",
+        Range(-1e-6, 1.0 + 1e-6, "(root to tip)"),
+    ),
+    Field(
+        "z",
+        ("z", "span", "radius", "r", "blspn", "spanwise position", "distance from root", "rnodes"),
+        LENGTHS,
+        "m",
+        Range(-1000.0, 1000.0, "m"),
+    ),
+    Field("chord", ("chord", "c", "blchord"), LENGTHS, "m", Range(0.0, 100.0, "m", above=True)),
+    Field(
+        "twist",
+        ("twist", "bltwist", "twist angle", "aerodynamic twist", "aerotwst", "theta"),
+        ANGLES,
+        "deg",
+        Range(-math.pi / 2, math.pi / 2, "rad"),
+    ),
+    Field(
+        "rthick",
+        ("rthick", "relative thickness", "t c", "tc", "thickness", "thickness to chord"),
+        RATIOS,
+        "-",
+        Range(0.0, 1.05, "of the chord", above=True),
+    ),
+    Field(
+        "thickness",
+        ("thickness", "absolute thickness"),
+        LENGTHS,
+        "m",
+        Range(0.0, 100.0, "m", above=True),
+    ),
+    Field(
+        "prebend",
+        ("prebend", "pre bend", "precurve", "prebend x", "x"),
+        LENGTHS,
+        "m",
+        Range(-1000.0, 1000.0, "m"),
+    ),
+    Field(
+        "sweep",
+        ("sweep", "presweep", "pre sweep", "sweep y", "y"),
+        LENGTHS,
+        "m",
+        Range(-1000.0, 1000.0, "m"),
+    ),
+    Field(
+        "pitch_axis",
+        ("pitch axis", "pitchaxis", "pitch axis xc", "chord offset", "xoffset"),
+        RATIOS,
+        "-",
+        Range(-1.0, 2.0, "of the chord"),
+    ),
+    Field("offset_y", ("section offset y", "offset y"), LENGTHS, "m", Range(-1000.0, 1000.0, "m")),
+    Field("offset_x", ("section offset x", "offset x"), LENGTHS, "m", Range(-1000.0, 1000.0, "m")),
+)
+TEXT_NAMES = ("airfoil", "airfoil name", "airfoils", "profile", "airfoil id")
+UNITS = {*LENGTHS, *ANGLES, *RATIOS}
+_BRACKETS = re.compile(r"^(.*?)[\[(]\s*([^\])]*?)\s*[\])]\s*$")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table: what it holds, as its header has it, its cells and their rows."""
+
+    key: str
+    title: str
+    factor: float
+    allowed: Range
+    cells: tuple[Cell, ...]
+    rows: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Block:
+    """A table: its columns by what they hold."""
+
+    columns: dict[str, Column]
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """The numbers of its rows in the file."""
+        return next(iter(self.columns.values())).rows
+
+
+def blocks(rows: Rows, notes: Notes) -> list[Block]:
+    """Find the tables in rows of cells; each starts with a header and ends with a blank row."""
+    found: list[Block] = []
+    header: dict[int, tuple[str, str, float, Range]] = {}
+    taken: list[tuple[int, Sequence[Cell]]] = []
+
+    def close() -> None:
+        if header and taken:
+            found.append(_block(header, taken))
+
+    for at, cells in rows:
+        known = _header(cells, notes, at)
+        if len(known) >= 2:
+            close()
+            header, taken = known, []
+        elif all(_blank(cell) for cell in cells):
+            close()
+            header, taken = {}, []
+        elif header:
+            taken.append((at, cells))
+    close()
+    return found
+
+
+def values_of(column: Column, notes: Notes) -> Array | None:
+    """Return a column in SI units, NaN where its cell is empty, or note what is no number."""
+    values = np.full(len(column.cells), np.nan)
+    wrong = []
+    for i, cell in enumerate(column.cells):
+        if _blank(cell):
+            continue
+        number = _number(cell)
+        values[i] = math.nan if number is None else column.factor * number
+        if not column.allowed.holds(values[i]):
+            wrong.append(i)
+    for i in wrong[:SHOWN]:
+        demand = "must be a number," if math.isnan(values[i]) else "allowed is"
+        notes.problems.append(
+            f"row {column.rows[i]}, {column.title}: got {_shown(column.cells[i])}, {demand} "
+            f"{column.allowed}"
+        )
+    if len(wrong) > SHOWN:
+        notes.problems.append(f"{column.title}: {len(wrong) - SHOWN} more cells are wrong")
+    return None if wrong else values
+
+
+def _block(header: dict[int, tuple[str, str, float, Range]], taken: list[Any]) -> Block:
+    rows = tuple(at for at, _ in taken)
+    columns = {}
+    for k, (key, title, factor, allowed) in header.items():
+        cells = tuple(cells[k] if k < len(cells) else None for _, cells in taken)
+        columns[key] = Column(key, title, factor, allowed, cells, rows)
+    return Block(columns)
+
+
+def _header(
+    cells: Sequence[Cell], notes: Notes, at: int
+) -> dict[int, tuple[str, str, float, Range]]:
+    """Return what each column of a header row holds; empty if the row is no header."""
+    texts = [cell if isinstance(cell, str) else "" for cell in cells]
+    known: dict[int, tuple[str, str, float, Range]] = {}
+    said: list[Finding] = []
+    for k, title in enumerate(texts):
+        found = _named(title, said, at)
+        if found is None:
+            continue
+        if any(found[0] == other[0] for other in known.values()):
+            said.append(Finding(f"row {at}", f"{title!r} stands twice; the first one is taken"))
+            continue
+        known[k] = found
+    if len(known) >= 2:
+        unknown = [title for k, title in enumerate(texts) if title.strip() and k not in known]
+        if unknown:
+            said.append(
+                Finding(f"row {at}", f"columns passed over: {', '.join(unknown[:8])[:200]}")
+            )
+        notes.findings += said
+    return known
+
+
+def _named(title: str, said: list[Finding], at: int) -> tuple[str, str, float, Range] | None:
+    """Tell what a column's title stands for."""
+    match = _BRACKETS.match(title)
+    name, unit = (match[1], match[2].lower()) if match else (title, None)
+    words = re.sub(r"[^a-z0-9]+", " ", name.lower()).split()
+    if unit is None and len(words) > 1 and words[-1] in UNITS and words[-1] != "1":
+        unit, words = words[-1], words[:-1]
+    plain = " ".join(words)
+    if plain in TEXT_NAMES:
+        return "airfoil", title.strip(), 1.0, Range(0.0, 0.0)
+    fields = [field for field in FIELDS if plain in field.names]
+    if not fields:
+        return None
+    if unit is not None and unit not in UNITS:
+        said.append(Finding(f"row {at}", f"{title!r}: unit {unit!r} is not known; passed over"))
+        return None
+    for field in fields:
+        if unit is not None and unit in field.units:
+            return field.key, title.strip(), field.units[unit], field.allowed
+    if unit is not None:
+        said.append(Finding(f"row {at}", f"{title!r}: no quantity in {unit!r}; passed over"))
+        return None
+    field = fields[0]
+    if field.usual != "-":
+        said.append(Finding(f"row {at}", f"{title!r} names no unit; taken as {field.usual}"))
+    return field.key, title.strip(), field.units[field.usual], field.allowed
+
+
+def _blank(cell: Cell) -> bool:
+    return cell is None or (isinstance(cell, str) and not cell.strip())
+
+
+def _number(cell: Cell) -> float | None:
+    if isinstance(cell, bool):
+        return None
+    if isinstance(cell, int | float):
+        return float(cell)
+    try:
+        return float(str(cell).strip())
+    except ValueError:
+        return None
+
+
+def _shown(cell: Cell) -> str:
+    text = repr(cell)
+    return text if len(text) <= 40 else text[:37] + "..."

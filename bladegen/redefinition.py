@@ -1,0 +1,242 @@
+"""A blade as a definition that files can hold: airfoils at stations, PCHIP distributions.
+
+An unperturbed blade is its definition.  A perturbed one gets airfoils of its own, in chords,
+at the baseline's stations and at as many more as it takes until the blade that a reader makes
+of the definition lies within a tolerance of the perturbed one; distributions are sampled in the
+same way where a window faded a change in.  What is left over is measured, never assumed.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bladegen.arrays import Array, Mask
+from bladegen.definition import (
+    Airfoil,
+    BladeDefinition,
+    Distribution,
+    ReferenceAxis,
+    Station,
+    pchip,
+)
+from bladegen.errors import Finding
+from bladegen.landmarks import contour
+from bladegen.polars import BORROWED, Polar, blended
+
+if TYPE_CHECKING:
+    from bladegen.blade import Blade
+
+__all__ = ["TOLERANCE", "redefined", "sampled"]
+
+TOLERANCE = 5e-4  # m: between stations, from the sections of the blade to those of the definition
+SHARE = 0.1  # of the tolerance, for each distribution
+BY_THICKNESS = 1e-3  # of the chord; polars are blended by thickness where it differs by more
+MOST_STATIONS = 400
+MOST_POINTS = 2_000  # of a distribution's grid
+UNCHANGED = 1e-9  # of a deformation's size or a thickening; less leaves an airfoil as it is
+BETWEEN = np.array([0.3, 0.5, 0.7])  # of an interval: where it is tested
+CLOSEST = 1e-5  # of the span, between points of a grid
+DECIMALS = 9  # of coordinates in chords: nanometres
+
+
+def redefined(blade: "Blade", *, tolerance: float = TOLERANCE) -> BladeDefinition:
+    """Return the definition of a blade, perturbed or not.
+
+    Parameters
+    ----------
+    blade : Blade
+        Its shape and planform; trailing-edge finish, section planes and path are ways of
+        building and no part of a definition.
+    tolerance : float
+        How far sections between stations may be off [m].
+
+    Returns
+    -------
+    BladeDefinition
+        The blade's own, where nothing was perturbed; otherwise one whose airfoils bear the
+        name of the blade and their place.  A finding says how many stations were added, and
+        which distance is left if the tolerance cannot be kept with `MOST_STATIONS`.
+    """
+    if not blade.changes:
+        return blade.definition
+    draft = _sampled_planform(blade, tolerance)
+    shapes = _Shapes(blade)
+    eta = blade.eta
+    while True:
+        definition = replace(draft, stations=shapes.stations(eta))
+        off = shapes.missed(definition, eta)
+        wide = (off > tolerance) & (np.diff(eta) > CLOSEST)
+        if not wide.any() or len(eta) + np.count_nonzero(wide) > MOST_STATIONS:
+            break
+        eta = np.union1d(eta, (0.5 * (eta[:-1] + eta[1:]))[wide])
+    definition = shapes.moved(definition, eta, SHARE * tolerance)
+    said = (
+        f"{len(eta)} stations, {len(eta) - len(blade.eta)} of them between those of the "
+        f"baseline; sections between stations within {1e3 * off.max():.2g} mm"
+    )
+    return replace(definition, findings=(*definition.findings, Finding("perturbed airfoils", said)))
+
+
+def sampled(quantity: Callable[[Array], Array], grid: Array, tolerance: float) -> Distribution:
+    """Return the PCHIP distribution through a function of span, within a tolerance of it.
+
+    Points are put between those of `grid` where they are needed, `MOST_POINTS` at most.
+    """
+    while True:
+        result = Distribution(grid, quantity(grid))
+        inner = grid[:-1, None] + np.diff(grid)[:, None] * BETWEEN
+        off = np.max(np.abs(result(inner) - quantity(inner)), axis=1)
+        wide = (off > tolerance) & (np.diff(grid) > CLOSEST)
+        if not wide.any() or len(grid) + np.count_nonzero(wide) > MOST_POINTS:
+            return result
+        grid = np.union1d(grid, (0.5 * (grid[:-1] + grid[1:]))[wide])
+
+
+def _sampled_planform(blade: "Blade", tolerance: float) -> BladeDefinition:
+    """Return the blade's definition with PCHIP distributions throughout, thickness included."""
+    blade_definition = blade.definition
+    longest = float(blade_definition.chord.values.max())
+    share = SHARE * tolerance
+
+    def plain(quantity: Distribution | None, scale: float = 1.0) -> Distribution | None:
+        if quantity is None or quantity.spline is pchip:
+            return quantity
+        return sampled(quantity, quantity.grid, share / scale)
+
+    def must(quantity: Distribution, scale: float = 1.0) -> Distribution:
+        result = plain(quantity, scale)
+        assert result is not None  # it was given
+        return result
+
+    axis = blade_definition.axis
+    thickness = blade_definition.relative_thickness
+    if thickness is not None and blade.thickenings:
+        base, grid = thickness, thickness.grid
+        for thickening in blade.thickenings:
+            grid = thickening.window.with_ramp(grid)
+
+        def thickened(eta: Array) -> Array:
+            flat = eta.reshape(-1)
+            values = base(flat)
+            for thickening in blade.thickenings:
+                values = values * thickening(flat)
+            return values.reshape(eta.shape)
+
+        thickness = sampled(thickened, grid, share / longest)
+    return replace(
+        blade_definition,
+        chord=must(blade_definition.chord),
+        twist=must(blade_definition.twist, longest),
+        axis=ReferenceAxis(must(axis.x), must(axis.y), must(axis.z)),
+        section_offset_y=plain(blade_definition.section_offset_y),
+        section_offset_x=plain(blade_definition.section_offset_x),
+        pitch_axis=plain(blade_definition.pitch_axis, longest),
+        relative_thickness=plain(thickness, longest),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Shapes:
+    """The airfoils of a perturbed blade, each made once, and how far a definition misses them."""
+
+    blade: "Blade"
+    known: dict[float, Station] = field(default_factory=dict)
+    between: dict[float, Array] = field(default_factory=dict)
+    noses: dict[float, float] = field(default_factory=dict)
+
+    def stations(self, eta: Array) -> tuple[Station, ...]:
+        """Return the blade's airfoils at span fractions: the baseline's where nothing changed."""
+        new = np.array([place for place in eta.tolist() if place not in self.known])
+        if new.size:
+            blade = self.blade
+            own = {station.eta: station for station in blade.definition.stations}
+            profiles = blade.profiles(new)
+            thickness = blade.splines.fit(profiles).relative_thickness
+            for i, changed in enumerate(self._changed(new)):
+                place = float(new[i])
+                nose = float(profiles[i, :, 0].min())
+                airfoil = Airfoil(
+                    f"{blade.name}-{1e4 * place:05.0f}",
+                    (profiles[i] - [nose, 0.0]).round(DECIMALS),
+                    round(float(thickness[i]), DECIMALS),
+                    *self._polars(place),
+                )
+                kept = place in own and not changed
+                self.known[place] = own[place] if kept else Station(place, airfoil)
+                self.noses[place] = 0.0 if kept else nose
+        return tuple(self.known[place] for place in eta.tolist())
+
+    def _polars(self, eta: float) -> tuple[tuple[Polar, ...], float | None]:
+        """Return the baseline's polars and aerodynamic centre there, marked as the baseline's."""
+        stations = self.blade.definition.stations
+        after = max(1, int(np.searchsorted([station.eta for station in stations[:-1]], eta)))
+        one, other = stations[after - 1], stations[after]
+        weight = float(np.clip((eta - one.eta) / (other.eta - one.eta), 0.0, 1.0))
+        rthick = self.blade.definition.relative_thickness
+        if rthick is not None:
+            ends, here = rthick(np.array([one.eta, other.eta])), float(rthick(eta))
+            if abs(ends[1] - ends[0]) > BY_THICKNESS:
+                weight = float(np.clip((here - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0))
+        first, second = one.airfoil, other.airfoil
+        near = first if weight < 0.5 else second
+        if not (first.polars and second.polars):
+            return (), near.aerodynamic_center
+        source = f"{BORROWED}, not of this shape: {first.name}"
+        if second is not first and weight > 0.0:
+            source += f" and {second.name}, {100 * weight:.0f} % of the latter"
+        polars = blended(first.polars, second.polars, weight, source)
+        return polars, near.aerodynamic_center
+
+    def _changed(self, eta: Array) -> Mask:
+        plain, X, _, _ = self.blade.shapes(eta)
+        changed: Mask = np.linalg.norm(X - plain, axis=(-2, -1)) > UNCHANGED
+        for thickening in self.blade.thickenings:
+            changed |= np.abs(thickening(eta) - 1.0) > UNCHANGED
+        return changed
+
+    def nose(self, eta: Array) -> Distribution:
+        """Return x of the foremost points [chords] over span, by which airfoils were moved.
+
+        Files want x from 0 on; a perturbed shape's nose moves, and its place goes into the
+        offset along the chord.
+        """
+        return Distribution(eta, np.array([self.noses[place] for place in eta.tolist()]))
+
+    def moved(self, definition: BladeDefinition, eta: Array, share: float) -> BladeDefinition:
+        """Return a definition with its offset along the chord from the foremost points."""
+        nose = self.nose(eta)
+        if not np.any(nose.values):
+            return definition
+        if definition.pitch_axis is not None:
+            pitch = definition.pitch_axis
+            grid = np.union1d(pitch.grid, eta)
+            longest = float(definition.chord.values.max())
+            made = sampled(lambda at: pitch(at) - nose(at), grid, share / longest)
+            return replace(definition, pitch_axis=made)
+        offset, chord = definition.offset_y, definition.chord
+        grid = np.union1d(chord.grid, eta)
+        made = sampled(lambda at: offset(at) - chord(at) * nose(at), grid, share)
+        return replace(definition, section_offset_y=made)
+
+    def missed(self, definition: BladeDefinition, eta: Array) -> Array:
+        """Return the largest distance [m] in each interval between stations, (s - 1,)."""
+        from bladegen.blade import Blade
+
+        again = Blade.from_definition(definition)
+        inner = eta[:-1, None] + np.diff(eta)[:, None] * BETWEEN
+        flat = inner.reshape(-1)
+        new = np.array([place for place in flat.tolist() if place not in self.between])
+        if new.size:
+            for place, xy in zip(new.tolist(), self.blade.profiles(new), strict=True):
+                self.between[place] = contour(xy).landmarks(again.u)
+        wanted = np.stack([self.between[place] for place in flat.tolist()])
+        off = again.profiles(flat) - wanted
+        off[..., 0] += self.nose(eta)(flat)[:, None]
+        along = np.gradient(wanted, axis=1)
+        along /= np.linalg.norm(along, axis=-1, keepdims=True)
+        apart = np.abs(off[..., 0] * along[..., 1] - off[..., 1] * along[..., 0])
+        apart = definition.chord(flat)[:, None] * apart
+        widest: Array = apart.max(axis=1).reshape(inner.shape).max(axis=1)
+        return widest

@@ -1,0 +1,147 @@
+"""Blade definitions to files: one module a format, one row in `FORMATS`.
+
+A new format is a function that writes a definition to a path and returns what the format cannot
+hold, and a row that says what it is called and by which suffixes it is meant.  A format of one
+file writes it through `files.replacing`; one of several files writes its main file to the path,
+and the others beside it, under names that start with the main file's.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from bladegen.blade import Blade
+from bladegen.definition import BladeDefinition
+from bladegen.errors import ExportError, Finding
+from bladegen.estimates import available, with_polars
+from bladegen.redefinition import redefined
+from bladegen.writers import airfoil_files, hawc2, openfast, spanwise_table, windio1, windio2
+from bladegen.writers.airfoil_files import write_airfoil
+
+__all__ = ["FORMATS", "Format", "format_of", "prepared", "write", "write_airfoil"]
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format.
+
+    Parameters
+    ----------
+    name : str
+        By which it is asked for: one word, lower case.
+    title : str
+        What it is called.
+    suffixes : tuple of str
+        Of its files, lower case, "" for a folder; the first row with a suffix is meant by it.
+    write : callable
+        From a definition and a path to what the format cannot hold.
+    polars : bool
+        Whether it holds polars.
+    """
+
+    name: str
+    title: str
+    suffixes: tuple[str, ...]
+    write: Callable[[BladeDefinition, Path], tuple[Finding, ...]]
+    polars: bool = False
+
+
+FORMATS = (
+    Format("windio2", "windIO 2", (".yaml", ".yml"), windio2.write, polars=True),
+    Format("windio1", "windIO 1", (".yaml", ".yml"), windio1.write, polars=True),
+    Format("openfast", "OpenFAST (AeroDyn blade)", (".dat",), openfast.write),
+    Format("hawc2", "HAWC2", (".htc",), hawc2.write),
+    Format("csv", "spanwise table (CSV)", (".csv",), spanwise_table.write),
+    Format("xlsx", "spanwise table (IEA workbook)", (".xlsx",), spanwise_table.write),
+    Format("selig", "a folder of airfoil files (Selig)", ("",), airfoil_files.write_selig),
+    Format("lednicer", "a folder of airfoil files (Lednicer)", ("",), airfoil_files.write_lednicer),
+)
+
+
+def write(
+    what: Blade | BladeDefinition,
+    path: str | Path,
+    *,
+    format: str | None = None,  # noqa: A002
+    polars: str | None = None,
+    reynolds: float | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[Finding, ...]:
+    """Write a blade to a file that other tools read.
+
+    Parameters
+    ----------
+    what : Blade or BladeDefinition
+        A perturbed blade is written with airfoils of its own (`redefinition.redefined`).
+    path : str or Path
+        Where to; an existing file is replaced once the new one is whole.
+    format : str, optional
+        The name of one of `FORMATS`; by the path's suffix if not given.
+    polars : str, optional
+        One of `estimates.POLICIES`.  By default those of a perturbed blade are estimated where
+        NeuralFoil is installed, and all others kept as they are.
+    reynolds : float, optional
+        The Reynolds number of estimated polars.
+    progress : callable
+        Told what is being done.
+
+    Returns
+    -------
+    tuple of Finding
+        What the format cannot hold, or holds only within a distance.
+
+    Raises
+    ------
+    ExportError
+        If there is no such format, or the file cannot be written.
+    BladegenError
+        If the polars asked for cannot be had.
+    """
+    path = Path(path)
+    row = format_of(path, format)
+    definition, said = prepared(
+        what, polars=polars if row.polars else "keep", reynolds=reynolds, progress=progress
+    )
+    return (said if row.polars else ()) + row.write(definition, path)
+
+
+def prepared(
+    what: Blade | BladeDefinition,
+    *,
+    polars: str | None = None,
+    reynolds: float | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[BladeDefinition, tuple[Finding, ...]]:
+    """Return what is written of a blade, and what is to be said of it; see `write`."""
+    if isinstance(what, BladeDefinition):
+        definition, made = what, tuple[Finding, ...]()
+        policy = polars or "keep"
+    else:
+        progress("giving the blade airfoils of its own")
+        definition, known = redefined(what), what.definition.findings
+        made = tuple(finding for finding in definition.findings if finding not in known)
+        policy = polars or ("estimate" if what.changes and available() else "keep")
+    definition, said = with_polars(definition, policy, reynolds=reynolds, progress=progress)
+    return definition, made + said
+
+
+def format_of(path: Path, name: str | None = None) -> Format:
+    """Return the format of a name, or without one the format that a path's suffix means.
+
+    Raises
+    ------
+    ExportError
+        If there is none.
+    """
+    for row in FORMATS:
+        if row.name == name or (name is None and path.suffix.lower() in row.suffixes):
+            return row
+    if name is not None:
+        names = ", ".join(row.name for row in FORMATS)
+        raise ExportError(f"format: got {name!r}, allowed are {names}")
+    known = dict.fromkeys(suffix for row in FORMATS for suffix in row.suffixes if suffix)
+    suffixes = ", ".join(known)
+    raise ExportError(
+        f"{path}: suffix {path.suffix!r}, allowed are {suffixes}, or none for "
+        "a folder of airfoil files"
+    )

@@ -1,0 +1,145 @@
+"""OpenFAST: an AeroDyn blade file, an airfoil coordinate file a node, and ElastoDyn's twist.
+
+AeroDyn takes the airfoil of a node as it is, without blending, so a blade's sections are written
+node by node; nodes that share a shape share its file.  Conventions: `bladegen.readers.openfast`.
+The reference point of an airfoil, of which the curve and sweep columns tell, is the quarter
+chord; towards the round root it moves to the half chord, about which a cylinder has no moment.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from bladegen.arrays import Array
+from bladegen.blade import Blade
+from bladegen.conventions import line_of_axis, slope_degrees
+from bladegen.definition import BladeDefinition
+from bladegen.errors import Finding
+from bladegen.files import folder, safe_stem
+from bladegen.readers.airfoil_folder import companion
+from bladegen.readers.openfast import TWIST_SUFFIX
+from bladegen.resampling import common_grid, shape_grid
+from bladegen.writers.text import aligned, write_lines
+
+__all__ = ["write"]
+
+LANDMARKS = 401
+SAME_SHAPE = 1e-12  # chords; nodes nearer than this share an airfoil
+TOLERANCE = 5e-4  # m; of a grid of about a hundred nodes, which AeroDyn still runs at ease
+THICK, ROUND = 0.4, 1.0  # of chord: from airfoil to cylinder, as public polar sets have it
+QUARTER, HALF = 0.25, 0.5
+
+
+def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
+    """Write a blade for OpenFAST: the blade file at `path`, the others beside it.
+
+    Returns what the files cannot hold.
+    """
+    eta, loss = common_grid(definition, TOLERANCE, over_z=True)
+    blade = Blade.from_definition(definition, landmarks=LANDMARKS)
+    eta = shape_grid(blade, eta)
+    profiles = blade.profiles(eta)
+    reference = np.interp(
+        blade.splines.fit(profiles).relative_thickness, [THICK, ROUND], [QUARTER, HALF]
+    )
+    changes = np.abs(np.diff(profiles, axis=0)).max(axis=(1, 2)) > SAME_SHAPE
+    ids = np.concatenate([[1], 1 + np.cumsum(changes)])
+    stem = safe_stem(path.stem)
+    airfoils = folder(companion(path))
+    names = {station.eta: station.airfoil.name for station in definition.stations}
+    for k in np.unique(ids).tolist():
+        first = int(np.argmax(ids == k))
+        name = names.get(float(eta[first]), f"section at eta = {eta[first]:.5f}")
+        write_lines(
+            airfoils / f"{stem}_AF{k:03d}_Coords.txt",
+            _coordinates(name, profiles[first], float(reference[first])),
+        )
+    for stale in airfoils.glob(f"{stem}_AF[0-9][0-9][0-9]_Coords.txt"):
+        if int(stale.name[len(stem) + 3 :][:3]) > ids[-1]:  # of a blade with more airfoils
+            stale.unlink()
+    write_lines(path.with_name(f"{path.stem}{TWIST_SUFFIX}"), _twist(definition, eta))
+    write_lines(path, _blade(definition, eta, ids, reference))
+    return tuple(_findings(definition, len(eta), int(ids[-1]), loss, airfoils.name))
+
+
+def _blade(definition: BladeDefinition, eta: Array, ids: Array, reference: Array) -> list[str]:
+    """Return the lines of AeroDyn's blade file."""
+    chord, twist, axis = definition.chord(eta), definition.twist(eta), definition.axis(eta)
+    aside = definition.offset_x(eta)
+    span = axis[:, 2] - axis[0, 2]
+    behind = definition.offset_y(eta)
+    x, y = line_of_axis(axis[:, 0], axis[:, 1], chord, twist, behind, reference)
+    x, y = x + aside * np.cos(twist), y - aside * np.sin(twist)
+    columns = [span, x, y, slope_degrees(x, span), np.degrees(twist), chord]
+    titles = ["BlSpn", "BlCrvAC", "BlSwpAC", "BlCrvAng", "BlTwist", "BlChord", "BlAFID"]
+    units = ["(m)", "(m)", "(m)", "(deg)", "(deg)", "(m)", "(-)"]
+    rows = zip(np.stack(columns, axis=1).tolist(), ids.tolist(), strict=True)
+    title = " ".join((definition.description or definition.name).split())
+    return [
+        "------- AERODYN BLADE DEFINITION INPUT FILE " + "-" * 45,
+        f"{title}; written by bladegen",
+        "======  Blade Properties " + "=" * 65,
+        f"{len(eta):<12d}NumBlNds    - Number of blade nodes used in the analysis (-)",
+        aligned(titles) + "   BlCb BlCenBn BlCenBt",
+        aligned(units) + "    (-)     (m)     (m)",
+        *(aligned([*row, str(k)]) + "    0.0     0.0     0.0" for row, k in rows),
+    ]
+
+
+def _coordinates(name: str, points: Array, reference: float) -> list[str]:
+    """Return the lines of an airfoil's coordinate file."""
+    return [
+        f"{len(points) + 1:<8d}NumCoords   ! number of coordinates, the reference point included",
+        f"! airfoil: {' '.join(name.split())}",
+        "! x/c and y/c of the reference point (the aerodynamic centre)",
+        aligned([reference, 0.0]),
+        "! x/c and y/c: trailing edge, suction side, leading edge, pressure side, trailing edge",
+        *(aligned(pair) for pair in points.tolist()),
+    ]
+
+
+def _twist(definition: BladeDefinition, eta: Array) -> list[str]:
+    """Return the columns that ElastoDyn's blade file takes from the geometry."""
+    pitch_axis = definition.offset_y(eta) / definition.chord(eta)
+    axis = definition.axis(eta)[:, 2]
+    fraction = (axis - axis[0]) / (axis[-1] - axis[0])
+    rows = np.stack([fraction, pitch_axis, np.degrees(definition.twist(eta))], axis=1)
+    return [
+        "Columns of ElastoDyn's blade file that follow from the geometry; written by bladegen",
+        aligned(["BlFract", "PitchAxis", "StrcTwst"]),
+        aligned(["(-)", "(-)", "(deg)"]),
+        *map(aligned, rows.tolist()),
+    ]
+
+
+def _findings(
+    definition: BladeDefinition, nodes: int, shapes: int, loss: float, airfoils: str
+) -> list[Finding]:
+    found = [
+        Finding(
+            "BlSpn",
+            f"{nodes} nodes for all quantities; between them at most {loss * 1e3:.2f} mm off",
+        ),
+        Finding(
+            "BlAFID",
+            f"{shapes} airfoils, coordinates in {airfoils}; polars are not written: AFNames must "
+            "list yours in this order",
+        ),
+        Finding(
+            "BlCrvAC, BlSwpAC",
+            "of each airfoil's reference point: the quarter chord, the half chord of cylinders",
+        ),
+    ]
+    if definition.relative_thickness is not None:
+        found.append(Finding("rthick", "not held as a table; the sections have it"))
+    if definition.section_offset_x is not None:
+        found.append(Finding("section_offset_x", "goes into BlCrvAC and BlSwpAC"))
+    if definition.axis.z.values[0] != 0:
+        found.append(
+            Finding(
+                "BlSpn", f"starts at 0; the axis starts at z = {definition.axis.z.values[0]:g} m"
+            )
+        )
+    if definition.rotor.hub_radius is not None:
+        found.append(Finding("rotor", "hub radius, cone and tilt stand in ElastoDyn's main input"))
+    return found

@@ -10,7 +10,7 @@ and a compiled loop (`kernels`) takes it from there.  The result is what `Blade.
 to rounding.  Arrays are (k, b, ...), spans first, until sections come out as (b, k, ...).
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -88,6 +88,13 @@ class SectionBatch:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "eta", readonly(self.eta))
+
+    def within(self, window: Window) -> "SectionBatch":
+        """Return the same sections under another window; what it does not touch is shared."""
+        other = replace(self, window=window)
+        own = {*vars(other), "_weight"}
+        vars(other).update({name: value for name, value in vars(self).items() if name not in own})
+        return other
 
     @cached_property
     def _weight(self) -> Array:

@@ -24,6 +24,7 @@ from bladegen.cli_options import (
     grouped,
 )
 from bladegen.cli_perturb import NO_CHANGES, Changes
+from bladegen.cli_studio import studio
 from bladegen.cli_view import KEYS, plot, preview
 from bladegen.errors import BladegenError
 from bladegen.terminal import (
@@ -51,6 +52,7 @@ app.command()(convert)
 app.command()(family)
 app.command(epilog=KEYS)(preview)
 app.command()(plot)
+app.command()(studio)
 
 
 def main() -> None:

@@ -20,6 +20,7 @@ __all__ = [
     "PerturbationError",
     "RenderError",
     "SpaceError",
+    "StudioError",
     "ToleranceError",
 ]
 
@@ -73,6 +74,10 @@ class PerturbationError(BladegenError):
 
 class SpaceError(BladegenError):
     """A shape space cannot be made or read, or is asked for what it does not hold."""
+
+
+class StudioError(BladegenError):
+    """The studio cannot start, or is asked for what it does not show."""
 
 
 class ToleranceError(CadError):

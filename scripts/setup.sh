@@ -50,28 +50,46 @@ print(*sorted({package for name, package in LIBRARIES.items() if not loads(name)
 PY
 }
 
-install_libraries() {
-    local packages sudo=""
-    packages="$(missing_packages "$1")"
-    [ -n "$packages" ] || return 0
+# Installs Debian packages, or says what is missing: install_packages PACKAGES WHAT
+install_packages() {
+    local packages="$1" what="$2" sudo=""
     local line="apt-get install -y --no-install-recommends $packages"
     if ! command -v apt-get >/dev/null 2>&1; then
-        fail "missing shared libraries; on Debian they come with: $packages"
+        fail "missing: $what; on Debian: $line"
     fi
     if [ "$(id -u)" -ne 0 ]; then
-        sudo -n true 2>/dev/null || fail "missing shared libraries; type: sudo $line"
+        sudo -n true 2>/dev/null || fail "missing: $what; type: sudo $line"
         sudo="sudo -n"
     fi
     printf 'setup: installing %s\n' "$packages"
     $sudo apt-get update -qq || true
     # shellcheck disable=SC2086  # the packages are words
     DEBIAN_FRONTEND=noninteractive $sudo $line >/dev/null || fail "could not: $line"
+}
+
+install_libraries() {
+    local packages
+    packages="$(missing_packages "$1")"
+    [ -n "$packages" ] || return 0
+    install_packages "$packages" "shared libraries"
     packages="$(missing_packages "$1")"
     [ -z "$packages" ] || fail "still missing after the install: $packages"
 }
 
+find_browser() {
+    command -v chromium || command -v chromium-browser || command -v google-chrome
+}
+
 python="$(find_python)"
 install_libraries "$python"
+# the tests look at the studio in a real browser
+case "$extra" in
+    test | dev)
+        find_browser >/dev/null ||
+            install_packages chromium "Chromium, which the tests of the studio need"
+        find_browser >/dev/null || fail "no Chromium after its install"
+        ;;
+esac
 # pip comes last: without it an earlier run was broken off
 [ -x .venv/bin/pip ] || "$python" -m venv --clear .venv
 # What was installed with an extra serves without it too, and "dev" holds "test".

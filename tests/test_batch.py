@@ -136,3 +136,15 @@ def test_a_perturbed_blade_can_be_the_baseline():
     result = made.evaluate(np.zeros((1, 4)), AffineChange())
     assert_allclose(result.sections[0], blade.sections(SPANS), rtol=0, atol=1e-9)
     assert affine.restore(*blade.shapes(SPANS)[1:]).shape == (37, 401, 2)
+
+
+def test_another_window_shares_what_it_does_not_touch():
+    made, t = batch_of("nrel5mw"), drawn(4, 2, 0.3)
+    change = AffineChange(thickness=1.1, twist=0.05, prebend_scale=0.5)
+    before = made.evaluate(t, change)
+    window = Window(0.3, 0.7)
+    other = made.within(window)
+    fresh = SectionBatch(made.blade, space(), window, SPANS)
+    assert_array_equal(other.evaluate(t, change).sections, fresh.evaluate(t, change).sections)
+    assert other.features is made.features
+    assert_array_equal(made.evaluate(t, change).sections, before.sections)

@@ -84,6 +84,7 @@ FLOW = [
     "blade_plots",
     "notebook",
     "contact",
+    "studio",
     "terminal",
     "cli_options",
     "cli_perturb",
@@ -92,10 +93,11 @@ FLOW = [
     "cli_convert",
     "cli_family",
     "cli_view",
+    "cli_studio",
     "cli",
 ]
 LATE = {
-    "cadquery": {"cad", "rotor"},
+    "cadquery": {"cad", "rotor", "studio"},
     "OCP": {"cad", "cad_files", "checks"},
     "trimesh": {"mesh"},
     "pyvista": {"preview", "comparison", "grid_files"},
@@ -110,6 +112,9 @@ LATE = {
     "neuralfoil": {"estimates"},
     "distributed": {"family_run", "cli_family"},
     "numba": {"compiled"},
+    "nicegui": {"studio"},
+    "fastapi": {"studio"},
+    "uvicorn": {"studio"},
 }
 COMPILED = {"compiled", "sizes", "kernels"}  # load Numba with themselves, so come late too
 CORE = FLOW[: FLOW.index("net") + 1]

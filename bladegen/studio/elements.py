@@ -1,0 +1,60 @@
+"""The page's own elements: the 3D view and the number with its slider.
+
+What they do in the browser stands in ``stage.js`` and ``number.js``.  three.js comes with the web
+framework, so nothing is fetched from elsewhere.
+"""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from bladegen.studio.state import Control
+
+__all__ = ["number", "stage"]
+
+WORDS = "The blade in 3D. Drag to turn it, scroll to come nearer; the figures stand beside it."
+
+
+def stage() -> Any:
+    """Put a 3D view on the page that is being built.
+
+    Its methods, called by `run_method`: ``show(url, baseline)``, ``paint(colours)``,
+    ``overlay(visible)``, ``look(view)``.
+    """
+    element = _kind("stage")()
+    element.props["label"] = WORDS
+    return element
+
+
+def number(control: Control, value: float) -> Any:
+    """Put a label, a slider and a field for a number on the page that is being built.
+
+    Its events: ``move`` with a value while the slider moves, ``settle`` when it is let go, ``type``
+    with the text of the field.  Its method ``put(value)`` shows another value.
+    """
+    element = _kind("number")()
+    element.props.update(
+        name=control.name,
+        label=control.label,
+        hint=control.hint,
+        unit=control.unit,
+        low=float(control.low),
+        high=float(control.high),
+        step=float(control.step),
+        places=control.places,
+        first=value,
+    )
+    return element
+
+
+@cache
+def _kind(name: str) -> type[Any]:
+    """Return an element's class, made once the web framework is loaded."""
+    from nicegui import ui
+
+    _ = ui.scene  # whose bundle holds three.js
+
+    class Own(ui.element, component=Path(__file__).parent / f"{name}.js"):
+        pass
+
+    return Own

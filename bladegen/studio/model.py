@@ -1,0 +1,316 @@
+"""From a state to what a page shows: surface, section, curves over span, and checks.
+
+A `Baseline` is a blade prepared once; its `scene` makes a variant of it in milliseconds, through
+the same `batch` that families are made with.  Sections stand at every hundredth of the span and
+where the blade bends.  Metres and radians, blade frame.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import radians
+from typing import Any
+
+import numpy as np
+
+from bladegen.arrays import Array
+from bladegen.batch import FAULTS, Batch, SectionBatch
+from bladegen.blade import Blade
+from bladegen.deformation import AffineChange, Window
+from bladegen.families import THINNEST
+from bladegen.files import safe_stem
+from bladegen.pga import ShapeSpace
+from bladegen.studio.state import State
+
+__all__ = ["Baseline", "Check", "Curves", "Scene", "changes"]
+
+PERCENTS = np.linspace(0.0, 1.0, 101)  # where a section can be looked at
+BENDING = 40  # spans that follow the blade's bends
+SHOWN_LANDMARKS = 100  # of the surface, about
+DRAWS = 50
+
+
+@dataclass(frozen=True)
+class Check:
+    """One line of the live checks: "good", "odd" or "bad", what was looked at, and the figure."""
+
+    status: str
+    what: str
+    figure: str
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """What varies over span, each (k,): chord [m], twist [deg], thickness [%], prebend [m]."""
+
+    eta: Array
+    chord: Array
+    twist: Array
+    thickness: Array
+    prebend: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What a page shows of a state.
+
+    Parameters
+    ----------
+    state : State
+        Of what.
+    eta : (k,) array
+        Span fractions.
+    sections : (k, n, 3) array
+        The surface [m].
+    deviation : (k, n) array
+        How far it lies off the baseline, along the baseline's outward normal [m].
+    curves : Curves
+        Over span.
+    checks : tuple of Check
+        What was found.
+    """
+
+    state: State
+    eta: Array
+    sections: Array
+    deviation: Array
+    curves: Curves
+    checks: tuple[Check, ...]
+
+    @property
+    def place(self) -> int:
+        """Where in `eta` the section looked at stands."""
+        return int(np.argmin(np.abs(self.eta - self.state.at)))
+
+    @property
+    def valid(self) -> bool:
+        """Whether nothing is wrong with the blade."""
+        return all(check.status != "bad" for check in self.checks)
+
+    @property
+    def profile(self) -> Array:
+        """The section looked at (n, 2), in chords from its leading edge along its chord."""
+        return _flattened(self.sections[self.place], float(self.curves.chord[self.place]))
+
+    @property
+    def placed(self) -> Array:
+        """The section looked at (n, 2) as it stands in the blade, y and x [m]."""
+        placed: Array = self.sections[self.place][:, 1::-1]
+        return placed
+
+    def packet(self) -> bytes:
+        """Return what the 3D view draws: little-endian counts k, n, the place of the section
+        (uint32), the surface and the deviation at every fourth landmark or so (float32).
+        """
+        some = _thinned(self.sections.shape[1])
+        surface, off = self.sections[:, some], self.deviation[:, some]
+        head = np.array([*surface.shape[:2], self.place], dtype="<u4")
+        return head.tobytes() + surface.astype("<f4").tobytes() + off.astype("<f4").tobytes()
+
+
+def _thinned(n: int) -> Any:
+    """Return which landmarks are drawn, the ends and the leading edge among them."""
+    step = max(1, (n - 1) // SHOWN_LANDMARKS)
+    return slice(None, None, step if (n - 1) % (2 * step) == 0 else 1)
+
+
+def changes(state: State) -> dict[str, Any]:
+    """Return what a state asks of `Blade.perturbed`, beside the space; nothing is the identity."""
+    asked: dict[str, Any] = {}
+    if any(state.t):
+        asked["t"] = list(state.t)
+    for name in ("thickness", "camber", "chord"):
+        if getattr(state, name) != 1.0:
+            asked[name] = getattr(state, name)
+    if state.twist:
+        asked["twist"] = radians(state.twist)
+    if state.prebend != 1.0:
+        asked["prebend_scale"] = state.prebend
+    if state.window is not None:
+        asked["window"] = Window(*state.window)
+    return asked
+
+
+@dataclass(frozen=True, eq=False)
+class Baseline:
+    """A blade of the library, ready to be shown with changes.
+
+    Parameters
+    ----------
+    key : str
+        Its key in the library.
+    blade : Blade
+        The blade.
+    space : ShapeSpace
+        The modes of its shape.
+    """
+
+    key: str
+    blade: Blade
+    space: ShapeSpace
+
+    @cached_property
+    def eta(self) -> Array:
+        """Span fractions of the sections."""
+        fixed = len(np.unique(self.blade.eta)) + 2
+        return np.union1d(PERCENTS, self.blade.stations(max(BENDING, fixed)))
+
+    @cached_property
+    def window(self) -> Window:
+        """Where changes act, if a state says nothing."""
+        return Window.beyond_circles(self.blade.definition.stations)
+
+    @cached_property
+    def _prepared(self) -> SectionBatch:
+        return SectionBatch(self.blade, self.space, self.window, self.eta)
+
+    def _batch(self, state: State) -> Batch:
+        batch: Batch = self._sections(state).evaluate(*self._asked(state))
+        return batch
+
+    def _sections(self, state: State) -> SectionBatch:
+        return self._prepared.within(Window(*state.window)) if state.window else self._prepared
+
+    def _asked(self, state: State) -> tuple[Array, AffineChange]:
+        change = AffineChange(
+            thickness=state.thickness,
+            camber=state.camber,
+            chord=state.chord,
+            twist=radians(state.twist),
+            prebend_scale=state.prebend,
+        )
+        return np.array([state.t]), change
+
+    def at(self, span: float) -> Scene:
+        """Return the blade without changes, its section at a span fraction looked at."""
+        return replace(self._plain, state=replace(self._plain.state, at=span))
+
+    @cached_property
+    def _plain(self) -> Scene:
+        return self.scene(State(self.key, (0.0,) * self.space.dimension))
+
+    @cached_property
+    def _rest(self) -> tuple[Array, Array]:
+        """The surface without changes, and its outward normals, both (k, n, 3)."""
+        sections = self._batch(State(self.key, (0.0,) * self.space.dimension)).sections[0]
+        return sections, _normals(sections)
+
+    def scene(self, state: State) -> Scene:
+        """Make what a page shows of a state of this blade."""
+        batch = self._batch(state)
+        sections = batch.sections[0]
+        rest, normals = self._rest
+        deviation = np.sum((sections - rest) * normals, axis=-1)
+        curves = Curves(
+            self.eta,
+            batch.chord[0],
+            np.degrees(batch.twist[0]),
+            100.0 * batch.relative_thickness[0],
+            state.prebend * self.blade.axis(self.eta)[:, 0],
+        )
+        return Scene(
+            state,
+            self.eta,
+            sections,
+            deviation,
+            curves,
+            self._checks(state, batch, deviation),
+        )
+
+    def drawn(self, state: State, rng: np.random.Generator, reach: float = 0.35) -> State:
+        """Return a random variant that is sound, at the same window and section."""
+        for _ in range(DRAWS):
+            state = state.drawn(self.space, rng, reach)
+            faults, thickness = self._sections(state).faults(*self._asked(state))
+            if not faults.any() and thickness.min() >= THINNEST:
+                break
+        return state
+
+    def variant(self, state: State) -> Blade:
+        """Return the blade of a state, tested.
+
+        Raises
+        ------
+        PerturbationError
+            If a section crosses itself or loses its thickness.
+        """
+        asked = changes(state)
+        if not state.changed:
+            return self.blade
+        space = self.space if "t" in asked else None
+        return self.blade.perturbed(
+            space, asked.pop("t", ()), name=f"{self.blade.name}-variant", **asked
+        )
+
+    def stem(self, state: State) -> str:
+        """Return the name of a state's files, without their suffix."""
+        return safe_stem(f"{self.blade.name}-variant" if state.changed else self.blade.name)
+
+    def _checks(self, state: State, batch: Batch, deviation: Array) -> tuple[Check, ...]:
+        faults, thickness = batch.faults[0], batch.relative_thickness[0]
+        crossing, broken = faults == FAULTS.index("crosses itself"), faults > 0
+        thin = int(np.argmin(thickness))
+        spread = self.space.extent * np.sqrt(self.space.variances[: self.space.dimension])
+        radius = float(np.linalg.norm(np.array(state.t) / spread))
+        out, into = (
+            np.unravel_index(f(deviation), deviation.shape) for f in (np.argmax, np.argmin)
+        )
+        far = out if deviation[out] >= -deviation[into] else into
+        thick_enough = thickness[thin] >= THINNEST
+        return (
+            Check(
+                "bad" if broken.any() or not thick_enough else "good",
+                "Valid",
+                f"{FAULTS[faults[np.argmax(broken)]]} at {self._at(np.argmax(broken))}"
+                if broken.any()
+                else "too thin"
+                if not thick_enough
+                else "sound all along",
+            ),
+            Check(
+                "good" if thick_enough else "bad",
+                "Thinnest",
+                f"{100 * thickness[thin]:.1f} % of the chord at {self._at(thin)}",
+            ),
+            Check(
+                "bad" if crossing.any() else "good",
+                "Crossing",
+                f"{np.count_nonzero(crossing)} of {len(faults)} sections",
+            ),
+            Check(
+                "good" if radius <= 1.0 else "odd",
+                "Shape in data",
+                f"{100 * radius:.0f} % of the way to the edge",
+            ),
+            Check(
+                "good",
+                "Off baseline",
+                f"{1e3 * deviation[far]:+.0f} mm at {self._at(far[0])}"
+                if abs(deviation[far]) >= 5e-4
+                else "0 mm",
+            ),
+        )
+
+    def _at(self, k: Any) -> str:
+        return f"{100 * self.eta[k]:.0f} % span"
+
+
+def _normals(sections: Array) -> Array:
+    """Return unit normals (k, n, 3) of a surface, outward; zero where it has none."""
+    around = np.gradient(sections, axis=1)
+    normal = np.cross(np.gradient(sections, axis=0), around)
+    length = np.linalg.norm(normal, axis=-1, keepdims=True)
+    unit: Array = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    return unit
+
+
+def _flattened(section: Array, chord: float) -> Array:
+    """Return a section in space (n, 3) as (n, 2) in chords: leading edge at 0, upright."""
+    edge = 0.5 * (section[0] + section[-1])
+    nose = section[np.argmax(np.linalg.norm(section - edge, axis=1))]
+    along = (edge - nose) / np.linalg.norm(edge - nose)
+    from_edge = section - edge
+    area = np.cross(from_edge[:-1], from_edge[1:]).sum(axis=0)
+    normal = area - (area @ along) * along
+    up = np.cross(normal / np.linalg.norm(normal), along)
+    flat: Array = (section - nose) @ np.stack([along, up], axis=1) / chord
+    return flat

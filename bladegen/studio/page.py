@@ -1,0 +1,303 @@
+"""One tab of the studio: its controls, what they do, and what it shows.
+
+Every tab has a `Page` of its own and shares nothing with others but the library.  Moves of a
+slider run through `move`; the geometry is made on a thread, one at a time and always the latest,
+and what comes out is shown at once: surface, charts, checks, buttons and the tab's address.
+"""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from secrets import token_urlsafe
+from tempfile import mkdtemp
+from typing import Any
+
+import numpy as np
+
+from bladegen.errors import BladegenError, StudioError
+from bladegen.studio import charts, recipes
+from bladegen.studio.library import Library
+from bladegen.studio.model import Scene
+from bladegen.studio.state import Control, History, State, controls, from_query, to_query
+from bladegen.studio.worker import Job, Made, Worker
+
+__all__ = ["Page", "Shown", "Studio"]
+
+POLL = 0.1  # s, between two looks at what a job is doing
+
+
+@dataclass(eq=False)
+class Studio:
+    """What the tabs of one running studio share.
+
+    Parameters
+    ----------
+    folder : Path
+        Its temporary folder: uploads and files to download.
+    library : Library
+        The blades.
+    first : str
+        The blade that is shown at first.
+    worker : Worker
+        Makes files.
+    packets : dict
+        The latest surface of each tab and its baseline's, by a name that nobody can guess.
+    """
+
+    folder: Path
+    library: Library
+    first: str
+    worker: Worker = field(default_factory=Worker)
+    packets: dict[str, tuple[bytes, bytes]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """What is sent to a tab for a state."""
+
+    scene: Scene
+    packets: tuple[bytes, bytes]
+    section: str
+    planform: str
+
+
+class Page:
+    """A tab's state, and the elements that show it; `panels.build` makes these."""
+
+    def __init__(self, studio: Studio, query: str) -> None:
+        from nicegui import context
+
+        self.studio = studio
+        self.client = context.client
+        self.name = token_urlsafe(12)
+        self.controls: dict[str, Control] = controls(studio.library.space)
+        self.trouble = ""
+        try:
+            state = from_query(query, self.controls, studio.first)
+        except StudioError as error:
+            self.trouble = str(error)
+            state = from_query("", self.controls, studio.first)
+        self.history = History(state)
+        self.placed = False
+        self.scene: Scene | None = None
+        self.followers: list[Callable[[], None]] = []
+        self.stage: Any = None
+        self.charts: Callable[[Shown], None] = lambda _: None
+        self._wanted: State | None = None
+        self._working = False
+        self._count = 0
+        self._rng = np.random.default_rng()
+        self.client.on_delete(lambda: studio.packets.pop(self.name, None))
+
+    @property
+    def state(self) -> State:
+        """What is shown, or will be in a moment."""
+        return self.history.present
+
+    def set(self, name: str, value: object) -> None:
+        """Move a control; a value that is not allowed is said and changes nothing."""
+        self._try(lambda: self.state.having(self.controls[name], value), name)
+
+    def set_window(self, start: object, end: object) -> None:
+        """Move the window."""
+        self._try(lambda: self.state.within(start, end), "window")
+
+    def _try(self, make: Callable[[], State], control: str) -> None:
+        try:
+            self.move(self.history.moved(make(), control))
+        except StudioError as error:
+            self.say(str(error), bad=True)
+            self.follow()
+
+    def pause(self) -> None:
+        """A control was let go: what comes next is a step of its own."""
+        self.history = self.history.paused()
+
+    def undo(self) -> None:
+        """Go one step back."""
+        self.move(self.history.undo())
+
+    def redo(self) -> None:
+        """Go one step forth."""
+        self.move(self.history.redo())
+
+    def reset(self) -> None:
+        """Go back to the baseline; a step that can be undone."""
+        self.move(self.history.moved(self.state.reset()))
+
+    async def prepared(self) -> None:
+        """Prepare the blade that a link names; one that cannot be is said and not shown."""
+        from nicegui import run
+
+        try:
+            await run.io_bound(self.studio.library.baseline, self.state.blade)
+        except BladegenError as error:
+            self.trouble = str(error)
+            self.history = History(from_query("", self.controls, self.studio.first))
+
+    async def pick(self, key: str) -> None:
+        """Show another blade of the library."""
+        from nicegui import run
+
+        if key == self.state.blade:
+            return
+        try:
+            await run.io_bound(self.studio.library.baseline, key)
+        except BladegenError as error:
+            self.say(str(error), bad=True)
+            self.follow()
+        else:
+            self.move(self.history.moved(State(key, (0.0,) * len(self.state.t), at=self.state.at)))
+
+    async def draw(self) -> None:
+        """Show a random sound variant."""
+        from nicegui import run
+
+        state = self.state
+
+        def drawn() -> State:
+            return self.studio.library.baseline(state.blade).drawn(state, self._rng)
+
+        found = await run.io_bound(drawn)
+        if found is not None:  # which it is when the studio ends
+            self.move(self.history.moved(found))
+
+    async def load(self, name: str, content: bytes) -> None:
+        """Take a file that was uploaded; one that is no blade is said and changes nothing."""
+        from nicegui import run
+
+        try:
+            key = await run.io_bound(self.studio.library.upload, name, content)
+        except BladegenError as error:
+            self.say(str(error), bad=True)
+            return
+        if key is None:
+            return
+        await self.pick(key)
+        self.say(f"loaded {self.studio.library.entry(key).label}")
+
+    def place(self, placed: bool) -> None:
+        """Draw the section as it stands in the blade, or along its own chord."""
+        self.placed = placed
+        self.refresh()
+
+    def move(self, history: History) -> None:
+        """Take a new history and show its present."""
+        self.history = history
+        self.follow()
+        self.refresh()
+
+    def follow(self) -> None:
+        """Let the controls show the state."""
+        for follower in self.followers:
+            follower()
+
+    def refresh(self) -> None:
+        """Show the state; while one is being made, only the latest of the others waits."""
+        from nicegui import background_tasks
+
+        self._wanted = self.state
+        if not self._working:
+            self._working = True
+            background_tasks.create(self._work())
+
+    async def _work(self) -> None:
+        from nicegui import run
+
+        blade = self.scene.state.blade if self.scene else ""
+        try:
+            while self._wanted is not None:
+                state, self._wanted = self._wanted, None
+                shown = await run.io_bound(self.made, state)
+                if shown is None:  # the studio ends
+                    return
+                self._show(shown, refit=state.blade != blade)
+                blade = state.blade
+        except BladegenError as error:
+            self.say(str(error), bad=True)
+            self.history = self.history.undo()
+            self.follow()
+        finally:
+            self._working = False
+
+    def made(self, state: State) -> Shown:
+        """Make all that a state shows; on a thread."""
+        baseline = self.studio.library.baseline(state.blade)
+        scene = baseline.scene(state)
+        plain = baseline.at(state.at)
+        return Shown(
+            scene,
+            (scene.packet(), plain.packet()),
+            charts.section(scene, plain, placed=self.placed),
+            charts.planform(scene, plain),
+        )
+
+    def _show(self, shown: Shown, *, refit: bool) -> None:
+        self.scene = shown.scene
+        self.studio.packets[self.name] = shown.packets
+        self._count += 1
+        self.studio.worker.begin()  # it needs some seconds, and somebody may export soon
+        self.charts(shown)
+        self.follow()
+        place = f"/studio/{self.name}/{self._count}"
+        self.stage.run_method("show", f"{place}/now", f"{place}/baseline" if refit else "")
+        address = f"?{to_query(shown.scene.state)}"
+        self.client.run_javascript(f"history.replaceState(null, '', {address!r})")
+
+    def recipe(self) -> tuple[str, str, str]:
+        """Return the state as a link, as a command and as a script."""
+        state, library = self.state, self.studio.library
+        entry = library.entry(state.blade)
+        stem = library.baseline(state.blade).stem(state)
+        return (
+            f"{self.client.request.base_url}?{to_query(state)}",
+            recipes.shell(state, entry, stem),
+            recipes.python(state, entry, stem),
+        )
+
+    async def export(self, suffix: str) -> None:
+        """Make a file and hand it to the browser, saying meanwhile what is being done."""
+        from nicegui import ui
+
+        state = self.state
+        folder = Path(mkdtemp(prefix="file-", dir=self.studio.folder))
+        job = Job(self.studio.library.entry(state.blade).source, state, suffix, str(folder))
+        kind = suffix.lstrip(".").upper()
+        with self.client:
+            note = ui.notification(f"{kind}: starting", spinner=True, timeout=None)
+        try:
+            made = await self._awaited(job, note, kind)
+        except (BladegenError, RuntimeError) as error:
+            self.say(str(error), bad=True)
+        else:
+            path = Path(made.path)
+            with self.client:
+                ui.download.file(path, path.name)
+            self.say(
+                made.remark or f"{path.name}, {path.stat().st_size / 1e6:.1f} MB",
+                bad=bool(made.remark),
+            )
+        finally:
+            note.dismiss()
+
+    async def _awaited(self, job: Job, note: Any, kind: str) -> Made:
+        future = self.studio.worker.submit(job)
+        while not future.done():
+            await asyncio.sleep(POLL)
+            if job.told.is_file():
+                note.message = f"{kind}: {job.told.read_text(encoding='utf-8')}"
+        return future.result()
+
+    def say(self, words: str, *, bad: bool = False) -> None:
+        """Show one line for a while."""
+        from nicegui import ui
+
+        with self.client:
+            ui.notify(
+                " ".join(words.split()),
+                type="negative" if bad else "positive",
+                position="bottom",
+                timeout=8000 if bad else 3000,
+                close_button="Close" if bad else False,
+            )

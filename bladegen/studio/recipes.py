@@ -1,0 +1,63 @@
+"""A state as a command line and as a Python script that make the same blade."""
+
+import shlex
+
+from bladegen.studio.library import Entry
+from bladegen.studio.state import State
+
+__all__ = ["python", "shell"]
+
+
+def shell(state: State, entry: Entry, stem: str) -> str:
+    """Return the command that builds the blade of a state into ``out/``."""
+    words = ["bladegen", "perturb" if state.changed else "build", entry.named, "-o", "out/"]
+    if any(state.t):
+        # a value that starts with a minus would be taken for an option
+        words.append("--pga=" + ",".join(f"{value:g}" for value in state.t))
+    for name, option in (
+        ("thickness", "--thickness"),
+        ("camber", "--camber"),
+        ("chord", "--chord"),
+        ("prebend", "--prebend-scale"),
+    ):
+        if getattr(state, name) != 1.0:
+            words += [option, f"{getattr(state, name):g}"]
+    if state.twist:
+        words.append(f"--twist={state.twist:g}")
+    if state.changed:
+        if state.window is not None:
+            words.append("--window={:g},{:g}".format(*state.window))
+        words += ["--name", stem]
+    return shlex.join(words)
+
+
+def python(state: State, entry: Entry, stem: str) -> str:
+    """Return the script that makes the blade of a state and writes ``<stem>.step``."""
+    lines = [
+        *(["from math import radians", ""] if state.twist else []),
+        "import bladegen as bg",
+        "",
+        f"blade = bg.Blade.from_definition(bg.read({entry.named!r}))",
+    ]
+    if state.changed:
+        asked = []
+        if any(state.t):
+            asked += ["bg.ShapeSpace.bundled()", repr(list(state.t))]
+        asked += [
+            f"{name}={getattr(state, field)!r}"
+            for name, field in (
+                ("thickness", "thickness"),
+                ("camber", "camber"),
+                ("chord", "chord"),
+                ("prebend_scale", "prebend"),
+            )
+            if getattr(state, field) != 1.0
+        ]
+        if state.twist:
+            asked.append(f"twist=radians({state.twist!r})")
+        if state.window is not None:
+            asked.append("window=bg.Window({!r}, {!r})".format(*state.window))
+        asked.append(f"name={stem!r}")
+        lines += ["blade = blade.perturbed(", *(f"    {word}," for word in asked), ")"]
+    lines.append(f"bg.export(blade, {stem + '.step'!r})")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,291 @@
+"""What a studio page shows: a frozen value, the query of a link, and a history of both.
+
+A state names a blade of the library and what is changed of it.  Every number is a multiple of
+its control's step within its control's bounds, so that a link, a command and a slider say the
+same.  Twist is in degrees here, as people write it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from math import isfinite
+from typing import Any
+from urllib.parse import parse_qs, urlencode
+
+import numpy as np
+
+from bladegen.errors import StudioError
+from bladegen.pga import ShapeSpace
+
+__all__ = ["CONTROLS", "Control", "History", "State", "controls", "from_query", "to_query"]
+
+LONGEST_QUERY = 2000
+STEPS_KEPT = 200  # of a page's history
+SHAPE_STEP = "0.001"
+
+
+@dataclass(frozen=True)
+class Control:
+    """A number that a slider sets.
+
+    Parameters
+    ----------
+    name, label, hint : str
+        Its field or place in `State`, what people read, and what it does.
+    low, high, step, default : Decimal
+        Bounds, grid and the value that changes nothing, in `unit`.
+    unit : str
+        Shown behind the label.
+    """
+
+    name: str
+    label: str
+    hint: str
+    low: Decimal
+    high: Decimal
+    step: Decimal
+    default: Decimal = Decimal(1)
+    unit: str = ""
+
+    def parsed(self, value: object) -> float:
+        """Return a number on the control's grid.
+
+        Raises
+        ------
+        StudioError
+            If it is no number or outside the bounds.
+        """
+        try:
+            number = float(str(value).strip())
+        except ValueError:
+            number = float("nan")
+        if not isfinite(number) or not float(self.low) <= number <= float(self.high):
+            raise StudioError(
+                f"{self.label.lower()}: got {str(value)[:40]}, allowed is {self.low:f} to "
+                f"{self.high:f}{' ' + self.unit if self.unit else ''}"
+            )
+        steps = round(Decimal(repr(number)) / self.step)
+        return float(min(max(steps * self.step, self.low), self.high))
+
+    @property
+    def places(self) -> int:
+        """Decimals that the step has."""
+        return max(0, -int(self.step.normalize().as_tuple().exponent))
+
+
+def _control(name: str, label: str, hint: str, *numbers: str, unit: str = "") -> Control:
+    low, high, step, default = map(Decimal, numbers)
+    return Control(name, label, hint, low, high, step, default, unit)
+
+
+AFFINE = (
+    _control("thickness", "Thickness", "Sections thicker or thinner", "0.8", "1.2", "0.01", "1"),
+    _control("camber", "Camber", "Chord against thickness", "0.9", "1.1", "0.005", "1"),
+    _control("chord", "Chord", "Wider or narrower, as thick", "0.85", "1.15", "0.01", "1"),
+    _control("twist", "Twist", "Turns sections", "-5", "5", "0.1", "0", unit="deg"),
+    _control("prebend", "Prebend", "Bends the blade more or less", "0", "2", "0.05", "1"),
+)
+START = _control("start", "Fade from", "Nothing changes up to this span", "0", "1", "0.01", "0")
+END = _control("end", "Fade to", "All changes hold from this span on", "0", "1", "0.01", "0")
+AT = _control("at", "Section at", "Span of the section that is shown", "0", "1", "0.01", "0.5")
+CONTROLS = {control.name: control for control in (*AFFINE, START, END, AT)}
+
+
+def controls(space: ShapeSpace) -> dict[str, Control]:
+    """Return all controls by name: t1, t2, ... within the space's data, then `CONTROLS`."""
+    step = Decimal(SHAPE_STEP)
+    shape = {
+        f"t{k + 1}": Control(
+            f"t{k + 1}",
+            f"Shape {k + 1}",
+            f"Along principal geodesic {k + 1}",
+            (Decimal(float(low)) / step).to_integral_value(ROUND_CEILING) * step,
+            (Decimal(float(high)) / step).to_integral_value(ROUND_FLOOR) * step,
+            step,
+            Decimal(0),
+        )
+        for k, (low, high) in enumerate(zip(space.lower, space.upper, strict=True))
+    }
+    return shape | CONTROLS
+
+
+@dataclass(frozen=True)
+class State:
+    """A blade and what is changed of it.
+
+    Parameters
+    ----------
+    blade : str
+        Its key in the library.
+    t : tuple of float
+        Coordinates along the modes [rad].
+    window : (float, float), optional
+        Where along the span changes fade in; past round roots if None.
+    thickness, camber, chord, twist, prebend : float
+        See `deformation.AffineChange`; twist in degrees, prebend is `prebend_scale`.
+    at : float
+        Span fraction of the section that is shown.
+    """
+
+    blade: str
+    t: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+    window: tuple[float, float] | None = None
+    thickness: float = 1.0
+    camber: float = 1.0
+    chord: float = 1.0
+    twist: float = 0.0
+    prebend: float = 1.0
+    at: float = 0.5
+
+    @property
+    def changed(self) -> bool:
+        """Whether the blade is another than its baseline."""
+        return any(self.t) or any(
+            getattr(self, control.name) != float(control.default) for control in AFFINE
+        )
+
+    def value(self, name: str) -> float:
+        """Return the number of the control `name` that is no end of the window."""
+        return self.t[int(name[1:]) - 1] if _is_shape(name) else float(getattr(self, name))
+
+    def having(self, control: Control, value: object) -> "State":
+        """Return the state with one number set, or say why it is not allowed."""
+        number = control.parsed(value)
+        if _is_shape(control.name):
+            k = int(control.name[1:]) - 1
+            return replace(self, t=(*self.t[:k], number, *self.t[k + 1 :]))
+        changed: dict[str, Any] = {control.name: number}
+        return replace(self, **changed)
+
+    def within(self, start: object, end: object) -> "State":
+        """Return the state with a window, or say why it is not allowed."""
+        window = START.parsed(start), END.parsed(end)
+        if window[0] > window[1]:
+            raise StudioError(f"window: got {window[0]:g} to {window[1]:g}, must rise")
+        return replace(self, window=window)
+
+    def reset(self) -> "State":
+        """Return the baseline, with the same section shown."""
+        return State(self.blade, (0.0,) * len(self.t), at=self.at)
+
+    def drawn(self, space: ShapeSpace, rng: np.random.Generator, reach: float) -> "State":
+        """Return random changes: shape in the ellipsoid and the box of the data, both times
+        `reach`; the rest within a third of what its slider allows.
+        """
+        known = controls(space)
+        while True:
+            t = reach * space.sample(1, rng)[0]
+            if space.outside(t / reach) is None:
+                break
+        result = replace(self, t=tuple(known[f"t{k + 1}"].parsed(x) for k, x in enumerate(t)))
+        for control in AFFINE:
+            middle = float(control.default)
+            low, high = ((float(end) - middle) / 3 + middle for end in (control.low, control.high))
+            result = result.having(control, rng.uniform(low, high))
+        return result
+
+
+def _is_shape(name: str) -> bool:
+    return name[:1] == "t" and name[1:].isdigit()
+
+
+def to_query(state: State) -> str:
+    """Return a state as a link's query: the blade, and what is not the identity."""
+    plain = State(state.blade, (0.0,) * len(state.t))
+    words = {"blade": state.blade}
+    if any(state.t):
+        words["t"] = ",".join(f"{value:g}" for value in state.t)
+    if state.window is not None:
+        words["window"] = ",".join(f"{value:g}" for value in state.window)
+    for entry in fields(State):
+        value = getattr(state, entry.name)
+        if isinstance(value, float) and value != getattr(plain, entry.name):
+            words[entry.name] = f"{value:g}"
+    return urlencode(words, safe=",")
+
+
+def from_query(query: str, known: Mapping[str, Control], default: str) -> State:
+    """Return the state that a link's query holds; keys that are missing change nothing.
+
+    Parameters
+    ----------
+    query : str
+        Without its question mark.
+    known : mapping
+        The controls by name, as `controls` gives them.
+    default : str
+        The blade, where the query names none.
+
+    Raises
+    ------
+    StudioError
+        If a value is not allowed, or a key is none of a link's.
+    """
+    if len(query) > LONGEST_QUERY:
+        raise StudioError(f"link: has {len(query)} characters, allowed are {LONGEST_QUERY}")
+    words = {key: values[-1] for key, values in parse_qs(query).items()}
+    modes = sum(map(_is_shape, known))
+    state = State(words.pop("blade", default), (0.0,) * modes)
+    for key, text in words.items():
+        numbers = text.split(",")
+        if key == "t":
+            if len(numbers) != modes:
+                raise StudioError(f"link: t: got {len(numbers)} coordinates, must be {modes}")
+            for k, number in enumerate(numbers):
+                state = state.having(known[f"t{k + 1}"], number)
+        elif key == "window":
+            if len(numbers) != 2:
+                raise StudioError(f"link: window: got {text[:40]!r}, must be two span fractions")
+            state = state.within(*numbers)
+        elif key in CONTROLS and key not in ("start", "end"):
+            state = state.having(known[key], text)
+        else:
+            allowed = ", ".join(entry.name for entry in fields(State))
+            raise StudioError(f"link: {key[:40]!r} is unknown, allowed are {allowed}")
+    return state
+
+
+@dataclass(frozen=True)
+class History:
+    """States one after the other: those before, the present one, and those undone.
+
+    Moves of one control without a pause are one step; the section that is shown is none.
+    """
+
+    present: State
+    before: tuple[State, ...] = ()
+    undone: tuple[State, ...] = ()
+    moving: str = ""
+
+    def moved(self, state: State, control: str = "") -> "History":
+        """Return the history with a new present, reached by moving `control`."""
+        if state == self.present:
+            return self
+        if replace(state, at=self.present.at) == self.present:
+            return replace(self, present=state)
+        if control and control == self.moving:
+            return replace(self, present=state, undone=())
+        before = (*self.before, self.present)[-STEPS_KEPT:]
+        return History(state, before, (), control)
+
+    def paused(self) -> "History":
+        """Return the history after a control was let go: its next move is a step of its own."""
+        return replace(self, moving="")
+
+    def undo(self) -> "History":
+        """Return the history one step back; itself at the start."""
+        if not self.before:
+            return self
+        *before, present = self.before
+        return History(
+            replace(present, at=self.present.at), tuple(before), (*self.undone, self.present)
+        )
+
+    def redo(self) -> "History":
+        """Return the history one step forth; itself at the end."""
+        if not self.undone:
+            return self
+        *undone, present = self.undone
+        return History(
+            replace(present, at=self.present.at), (*self.before, self.present), tuple(undone)
+        )

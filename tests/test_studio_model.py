@@ -1,0 +1,128 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import bladegen as bg
+from bladegen.errors import PerturbationError
+from bladegen.studio.model import Baseline
+from bladegen.studio.state import State
+
+SPACE = bg.ShapeSpace.bundled()
+MOVED = State(
+    "nrel5mw", (0.03, -0.02, 0.01, 0.005), None, thickness=1.05, camber=0.98, twist=1.5, prebend=0.5
+)
+STATES = [
+    State("nrel5mw"),
+    MOVED,
+    replace(MOVED, window=(0.3, 0.6), chord=1.1),
+    State("nrel5mw", prebend=1.6, at=0.25),
+]
+
+
+@pytest.fixture(scope="module")
+def baseline():
+    return Baseline("nrel5mw", bg.Blade.from_definition(bg.read("nrel5mw")), SPACE)
+
+
+def status(scene):
+    return {check.what: check.status for check in scene.checks}
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_what_is_shown_is_the_blade_that_is_exported(baseline, state):
+    scene, blade = baseline.scene(state), baseline.variant(state)
+    assert_allclose(scene.sections, blade.sections(scene.eta), rtol=0, atol=1e-7)
+    assert_allclose(scene.curves.chord, blade.chord(scene.eta), rtol=1e-9)
+    assert_allclose(np.radians(scene.curves.twist), blade.twist(scene.eta), rtol=0, atol=1e-9)
+    assert_allclose(scene.curves.prebend, blade.axis(scene.eta)[:, 0], rtol=0, atol=1e-9)
+    thickness = blade.relative_thickness(scene.eta)
+    assert_allclose(scene.curves.thickness, 100 * thickness, rtol=0, atol=1e-4)
+    assert scene.valid
+
+
+@pytest.mark.parametrize("at", [0.0, 0.37, 1.0])
+def test_any_hundredth_of_the_span_can_be_looked_at(baseline, at):
+    scene = baseline.scene(replace(MOVED, at=at))
+    assert scene.eta[scene.place] == pytest.approx(at, abs=1e-12)
+    blade = baseline.variant(MOVED)
+    assert_allclose(scene.placed, blade.sections(at)[:, 1::-1], rtol=0, atol=1e-7)
+    assert_allclose(baseline.at(at).sections, baseline.blade.sections(scene.eta), atol=1e-7)
+
+
+def test_a_section_is_upright_and_of_unit_chord(baseline):
+    scene = baseline.scene(replace(MOVED, at=0.6))
+    edge = 0.5 * (scene.profile[0] + scene.profile[-1])
+    assert_allclose(edge, [1.0, 0.0], rtol=0, atol=1e-3)
+    middle = len(scene.profile) // 2
+    assert scene.profile[middle // 2, 1] > 0 > scene.profile[middle + middle // 2, 1]
+    lengths = (
+        np.linalg.norm(np.diff(scene.profile, axis=0), axis=1) * scene.curves.chord[scene.place]
+    )
+    in_space = np.diff(scene.sections[scene.place], axis=0)
+    assert_allclose(lengths, np.linalg.norm(in_space, axis=1), rtol=0, atol=1e-6)
+
+
+def test_deviation_is_nothing_at_rest_and_outward_when_thicker(baseline):
+    assert not baseline.scene(State("nrel5mw")).deviation.any()
+    thick, thin = (baseline.scene(State("nrel5mw", thickness=s)).deviation for s in (1.1, 0.9))
+    assert thick.max() > 0.05
+    assert thick.min() > -0.1 * thick.max()
+    assert_allclose(thin, -thick, rtol=0, atol=1e-4)  # but for edges opened to 2 mm
+
+
+def test_a_bend_moves_the_suction_side_out_and_the_pressure_side_in():
+    baseline = Baseline("iea15mw", bg.Blade.from_definition(bg.read("iea15mw")), SPACE)
+    tip = baseline.scene(State("iea15mw", prebend=0.5)).deviation[-20]
+    axis = baseline.blade.axis(np.array([baseline.eta[-20]]))[0, 0]
+    quarter = len(tip) // 4
+    assert tip[quarter] == pytest.approx(-0.5 * axis, rel=0.2)
+    assert tip[-quarter] == pytest.approx(0.5 * axis, rel=0.2)
+
+
+def test_checks_find_what_makes_a_variant_unusable(baseline):
+    rng = np.random.default_rng(5)
+    bad = State("nrel5mw")
+    while status(baseline.scene(bad))["Crossing"] == "good":
+        bad = bad.drawn(SPACE, rng, 1.0)
+    scene = baseline.scene(bad)
+    assert not scene.valid
+    assert "crosses itself" in scene.checks[0].figure
+    with pytest.raises(PerturbationError, match="crosses itself"):
+        baseline.variant(bad)
+
+
+def test_far_shapes_are_odd_not_bad(baseline):
+    scene = baseline.scene(State("nrel5mw", (0.242, 0.0, 0.06, 0.05)))
+    assert status(scene)["Shape in data"] == (
+        "odd" if "100 %" not in scene.checks[3].figure else ""
+    )
+    near = baseline.scene(State("nrel5mw", (0.01, 0.0, 0.0, 0.0)))
+    assert status(near)["Shape in data"] == "good"
+
+
+def test_draws_are_sound(baseline):
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        state = baseline.drawn(State("nrel5mw", at=0.2, window=(0.1, 0.3)), rng)
+        assert baseline.scene(state).valid
+        assert (state.blade, state.at, state.window) == ("nrel5mw", 0.2, (0.1, 0.3))
+        baseline.variant(state)
+
+
+def test_a_packet_holds_the_surface_and_the_deviation(baseline):
+    scene = baseline.scene(MOVED)
+    packet = scene.packet()
+    k, n, place = np.frombuffer(packet, "<u4", 3)
+    points = np.frombuffer(packet, "<f4", 3 * k * n, 12).reshape(k, n, 3)
+    off = np.frombuffer(packet, "<f4", k * n, 12 + 12 * k * n).reshape(k, n)
+    assert len(packet) == 12 + 16 * k * n
+    assert (n, place) == (101, scene.place)
+    assert_allclose(points[:, [0, n // 2, -1]], scene.sections[:, [0, 200, -1]], rtol=1e-6)
+    assert_allclose(off, scene.deviation[:, ::4], atol=1e-6)
+
+
+def test_names_of_files(baseline):
+    assert baseline.stem(State("nrel5mw")) == "nrel5mw"
+    assert baseline.stem(MOVED) == baseline.variant(MOVED).name == "nrel5mw-variant"

@@ -1,0 +1,56 @@
+import shlex
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from typer.testing import CliRunner
+
+import bladegen as bg
+from bladegen import checks, cli
+from bladegen.studio.library import Entry
+from bladegen.studio.model import Baseline
+from bladegen.studio.recipes import python, shell
+from bladegen.studio.state import State
+
+ENTRY = Entry("nrel5mw", "nrel5mw", "nrel5mw", "nrel5mw")
+MOVED = State("nrel5mw", (-0.03, 0.0, 0.01, -0.005), (0.1, 0.3), 1.05, 0.98, 1.1, -1.5, 0.5)
+STATES = [State("nrel5mw"), MOVED, replace(MOVED, t=(0.0,) * 4, window=None)]
+
+
+@pytest.fixture(scope="module")
+def baseline():
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"))
+    return Baseline("nrel5mw", blade, bg.ShapeSpace.bundled())
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_the_script_makes_the_same_blade(baseline, state, monkeypatch):
+    written = {}
+    monkeypatch.setattr(bg, "export", lambda blade, path: written.update({path: blade}))
+    exec(compile(python(state, ENTRY, baseline.stem(state)), "recipe", "exec"), {})
+    ((path, blade),) = written.items()
+    assert path == f"{baseline.stem(state)}.step"
+    eta = np.linspace(0.0, 1.0, 12)
+    assert_allclose(blade.sections(eta), baseline.variant(state).sections(eta), rtol=0, atol=0)
+    assert blade.name == baseline.stem(state)
+
+
+def test_the_command_makes_the_same_blade(baseline, tmp_path):
+    state = MOVED
+    words = shlex.split(shell(state, ENTRY, baseline.stem(state)))
+    assert words[0] == "bladegen"
+    words[words.index("out/")] = str(tmp_path)
+    done = CliRunner().invoke(cli.app, [*words[1:], "--format", "stl", "--stations", "60"])
+    assert done.exit_code == 0, done.output
+    made = checks.check_file(tmp_path / f"{baseline.stem(state)}.stl").figures
+    own = bg.export(baseline.variant(state), tmp_path / "own.stl", stations=60)
+    assert made["volume"] == pytest.approx(checks.check_file(own).figures["volume"], rel=1e-6)
+
+
+def test_names_with_blanks_and_quotes_are_one_word():
+    entry = replace(ENTRY, named="my 'blade'; rm -rf.yaml")
+    assert shlex.split(shell(STATES[0], entry, "x"))[2] == entry.named
+    code = python(STATES[0], entry, "x")
+    assert compile(code, "recipe", "exec")
+    assert repr(entry.named) in code

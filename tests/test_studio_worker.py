@@ -1,0 +1,75 @@
+import os
+import signal
+from concurrent.futures.process import BrokenProcessPool
+from zipfile import ZipFile
+
+import pytest
+
+from bladegen import checks
+from bladegen.errors import StudioError
+from bladegen.exporters import FORMATS, Format
+from bladegen.studio.state import State
+from bladegen.studio.worker import Job, Worker, formats, make
+
+MOVED = State("nrel5mw", (0.03, -0.02, 0.01, 0.005), thickness=1.05)
+
+
+def test_each_format_is_offered_once_and_solids_first():
+    offered = list(formats())
+    assert offered[:3] == [".step", ".stl", ".glb"]
+    assert set(offered) <= set(FORMATS)
+    assert {FORMATS[suffix].write for suffix in offered} == {f.write for f in FORMATS.values()}
+    assert len({FORMATS[suffix].write for suffix in offered}) == len(offered)
+
+
+def test_a_job_makes_its_file_and_says_what_it_does(tmp_path):
+    job = Job("nrel5mw", MOVED, ".stl", str(tmp_path))
+    made = make(job)
+    assert made.path == str(tmp_path / "nrel5mw-variant.stl")
+    assert not made.remark
+    assert job.told.read_text() == "meshing"
+    assert not checks.check_file(tmp_path / "nrel5mw-variant.stl").problems
+
+
+def test_a_format_of_several_files_comes_as_one_archive(tmp_path, monkeypatch):
+    def write(products, path):
+        path.write_text(products.blade.name)
+        (path.parent / "airfoils").mkdir()
+        (path.parent / "airfoils" / "a.dat").write_text("1 0")
+
+    monkeypatch.setitem(FORMATS, ".many", Format("several files", write))
+    made = make(Job("nrel5mw", MOVED, ".many", str(tmp_path)))
+    with ZipFile(made.path) as archive:
+        assert sorted(archive.namelist()) == ["airfoils/a.dat", "nrel5mw-variant.many"]
+        assert archive.read("nrel5mw-variant.many") == b"nrel5mw-variant"
+
+
+def test_a_missed_tolerance_is_a_remark(tmp_path, monkeypatch):
+    monkeypatch.setattr("bladegen.net.MAX_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.net.FIRST_SECTIONS", 20)
+    made = make(Job("nrel5mw", MOVED, ".step", str(tmp_path)))
+    assert made.path.endswith("nrel5mw-variant.out-of-tolerance.step")
+    assert "off the blade" in made.remark
+    assert str(tmp_path) not in made.remark
+
+
+def test_a_job_that_cannot_be_done_is_one_error():
+    with pytest.raises(StudioError, match="neither a bundled blade nor a file"):
+        make(Job("gone.yaml", State("x"), ".stl", "."))
+
+
+def test_a_process_that_died_is_replaced(tmp_path):
+    worker = Worker()
+    try:
+        pool = worker.begin()
+        victim = pool.submit(os.getpid).result(timeout=120)
+        os.kill(victim, signal.SIGKILL)
+        with pytest.raises(BrokenProcessPool):
+            pool.submit(os.getpid).result(timeout=120)
+        made = worker.submit(Job("nrel5mw", MOVED, ".stl", str(tmp_path))).result(timeout=240)
+        assert made.path.endswith(".stl")
+        with pytest.raises(StudioError, match="neither a bundled blade"):
+            worker.submit(Job("gone", MOVED, ".stl", str(tmp_path))).result(timeout=120)
+    finally:
+        worker.end()
+        worker.end()

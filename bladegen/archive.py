@@ -4,7 +4,10 @@ Nothing in such a file is executed: plain arrays and text only.
 """
 
 import hashlib
+import struct
+import tokenize
 import zipfile
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -15,15 +18,29 @@ from bladegen.arrays import Array
 from bladegen.errors import SpaceError
 from bladegen.files import replacing
 
-__all__ = ["load_arrays", "save_arrays"]
+__all__ = ["checksum", "load_arrays", "save_arrays"]
 
 VERSION = 1
-MAX_BYTES = 200_000_000
+MAX_BYTES = 200_000_000  # of the file, and of what it unpacks to
+LABELS = ("version", "about", "checksum")
+DAMAGED = (  # what zipfile, zlib and numpy raise at bytes that are no archive of arrays
+    ValueError,
+    LookupError,
+    EOFError,
+    NotImplementedError,  # a way of packing that zipfile does not know
+    RuntimeError,  # a member under a password
+    MemoryError,  # a header that claims more than there is
+    OverflowError,
+    struct.error,
+    tokenize.TokenError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 def save_arrays(path: Path, arrays: dict[str, Array], about: str) -> None:
     """Write arrays to a file; an existing one is replaced once the new one is whole."""
-    labels = {"version": VERSION, "about": about, "checksum": _checksum(arrays, about)}
+    labels = {"version": VERSION, "about": about, "checksum": checksum(arrays, about)}
     payload: dict[str, Any] = {name: np.array(value) for name, value in labels.items()}
     with replacing(path) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(stream, **(payload | arrays))
@@ -40,22 +57,30 @@ def load_arrays(path: Path, names: Sequence[str]) -> tuple[dict[str, Array], str
     try:
         if path.stat().st_size > MAX_BYTES:
             raise SpaceError(f"{path}: is larger than {MAX_BYTES} bytes")
-        with np.load(path, allow_pickle=False) as archive:
-            held = {name: archive[name] for name in ("version", "about", "checksum", *names)}
+        with zipfile.ZipFile(path) as archive:
+            if sum(member.file_size for member in archive.infolist()) > MAX_BYTES:
+                raise SpaceError(f"{path}: unpacks to more than {MAX_BYTES} bytes")
+            held = {name: _member(archive, name) for name in (*LABELS, *names)}
     except OSError as error:
         raise SpaceError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except DAMAGED as error:
         raise SpaceError(f"{path}: is no shape space: {error}") from None
     if held["version"].shape != () or held["version"] != VERSION:
         raise SpaceError(f"{path}: has version {held['version']}, allowed is {VERSION}")
     arrays = {name: held[name] for name in names}
     about = str(held["about"])
-    if str(held["checksum"]) != _checksum(arrays, about):
+    if str(held["checksum"]) != checksum(arrays, about):
         raise SpaceError(f"{path}: is damaged: its checksum does not match its arrays")
     return arrays, about
 
 
-def _checksum(arrays: dict[str, Array], about: str) -> str:
+def _member(archive: zipfile.ZipFile, name: str) -> Any:
+    with archive.open(f"{name}.npy") as stream:
+        return np.lib.format.read_array(stream, allow_pickle=False)
+
+
+def checksum(arrays: dict[str, Array], about: str) -> str:
+    """Return the digest that vouches for arrays and the text that goes with them."""
     digest = hashlib.sha256(about.encode())
     for name, array in arrays.items():
         digest.update(f"{name} {array.shape} {array.dtype.str}".encode())

@@ -17,7 +17,7 @@ from typing import Any
 from bladegen import __version__, cad, cad_files, checks, combs, exporters, mesh
 from bladegen.blade import Blade
 from bladegen.errors import ToleranceError
-from bladegen.files import folder, replacing, safe_stem
+from bladegen.files import alone, digest_of, folder, replacing, safe_stem
 from bladegen.grid_quality import grid_figures
 from bladegen.net import Deviation
 from bladegen.rotor import Rotor, write_glb, write_step
@@ -69,9 +69,24 @@ def build(
     ToleranceError
         If the solid misses its tolerance; the other files and the report are written all the
         same, and the solid is kept under another name.
+    ExportError
+        If a format is not known, the folder cannot be written, or another run writes this blade
+        there.
     """
+    with alone(folder(target), safe_stem(blade.name)):
+        return _built(blade, target, formats, options, rotor, progress)
+
+
+def _built(
+    blade: Blade,
+    target: Path,
+    formats: Sequence[str],
+    options: exporters.Options | None,
+    rotor: Rotor | None,
+    progress: Callable[[str], None],
+) -> dict[str, Any]:
     stem = safe_stem(blade.name)
-    paths = [folder(target) / f"{stem}.{suffix.lower().lstrip('.')}" for suffix in formats]
+    paths = [target / f"{stem}.{suffix.lower().lstrip('.')}" for suffix in formats]
     for path in paths:
         exporters.format_of(path)
     options = options or exporters.Options()
@@ -152,8 +167,9 @@ class _Ledger:
         self.note(path)
 
     def note(self, path: Path) -> None:
-        """Add a file that lies on the disk."""
-        self.files.append({"name": path.name, "bytes": path.stat().st_size})
+        """Add a file that lies on the disk; a report that does not fit the file beside it shows."""
+        size = path.stat().st_size
+        self.files.append({"name": path.name, "bytes": size, "sha256": digest_of(path)})
 
 
 def _measure(

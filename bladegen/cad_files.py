@@ -1,10 +1,13 @@
 """CAD files of solids: STEP, IGES and OCCT's own BREP, and any of them back to a shape.
 
-All in millimetres: STEP and IGES say so in their headers, BREP states no unit.  OCP is imported
+All in millimetres: STEP and IGES say so in their headers, BREP states no unit.  OCCT writes into
+memory and Python to the disk, since OCCT does not notice when a disk is full.  OCP is imported
 when first needed.
 """
 
+import io
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -73,9 +76,11 @@ def write_step(
         if timestamp is not None:
             header = APIHeaderSection_MakeHeader(writer.Model())
             header.SetTimeStamp(TCollection_HAsciiString(timestamp))
-        status = writer.Write(str(path))
+        content = io.BytesIO()
+        status = writer.WriteStream(content)
     if status.name != "IFSelect_RetDone":
         raise CadError(f"{path}: OCCT could not write the STEP file ({status.name})")
+    path.write_bytes(content.getvalue())
 
 
 def read_step(path: Path) -> Any:
@@ -95,8 +100,10 @@ def read_step(path: Path) -> Any:
         return reader.OneShape()
 
 
-def write_iges(solid: Solid, path: Path) -> None:
+def write_iges(solid: Solid, path: Path, *, timestamp: str | None = None) -> None:
     """Write a solid as IGES 5.3 in millimetres, one manifold solid B-rep (entity 186).
+
+    The times in its header are those of `write_step`.
 
     Raises
     ------
@@ -104,15 +111,24 @@ def write_iges(solid: Solid, path: Path) -> None:
         If OCCT cannot write the file.
     """
     from OCP.IGESControl import IGESControl_Controller, IGESControl_Writer
+    from OCP.TCollection import TCollection_HAsciiString
 
+    timestamp = timestamp or _source_date()
     with _quietly():
         IGESControl_Controller.Init_s()
         writer = IGESControl_Writer("MM", SOLIDS_MODE)
         if not writer.AddShape(solid.shape):
             raise CadError(f"{path}: OCCT could not turn the solid into IGES")
         writer.ComputeModel()
-        if not writer.Write(str(path)):
+        if timestamp is not None:
+            header = writer.Model().ChangeGlobalSection()
+            when = TCollection_HAsciiString(re.sub("[-:]", "", timestamp).replace("T", "."))
+            header.SetDate(when)
+            header.SetLastChangeDate(when)
+        content = io.BytesIO()
+        if not writer.Write(content):
             raise CadError(f"{path}: OCCT could not write the IGES file")
+    path.write_bytes(content.getvalue())
 
 
 def read_iges(path: Path) -> Any:
@@ -144,8 +160,9 @@ def write_brep(solid: Solid, path: Path) -> None:
     from OCP.TopTools import TopTools_FormatVersion
 
     version = TopTools_FormatVersion.TopTools_FormatVersion_CURRENT
-    if not BRepTools.Write_s(solid.shape, str(path), False, False, version):
-        raise CadError(f"{path}: OCCT could not write the BREP file")
+    content = io.BytesIO()
+    BRepTools.Write_s(solid.shape, content, False, False, version)
+    path.write_bytes(content.getvalue())
 
 
 def read_brep(path: Path) -> Any:
@@ -248,7 +265,11 @@ def _source_date() -> str | None:
     seconds = os.environ.get("SOURCE_DATE_EPOCH")
     if seconds is None or not seconds.isdigit():
         return None
-    return datetime.fromtimestamp(int(seconds), UTC).strftime("%Y-%m-%dT%H:%M:%S")
+    try:
+        when = datetime.fromtimestamp(int(seconds), UTC)
+    except (ValueError, OverflowError, OSError):
+        raise CadError(f"SOURCE_DATE_EPOCH: got {seconds}, which is no time of this era") from None
+    return when.strftime("%Y-%m-%dT%H:%M:%S")
 
 
 def _ascii(text: str) -> str:

@@ -62,9 +62,22 @@ def main() -> None:
     except BladegenError as error:
         sys.stderr.write(f"bladegen: {' '.join(str(error).split())}\n")
         sys.exit(1)
+    except ImportError as error:  # libraries are imported where they are needed
+        sys.stderr.write(f"bladegen: {_missing(error)}\n")
+        sys.exit(1)
     except KeyboardInterrupt:
         sys.stderr.write("bladegen: interrupted\n")
         sys.exit(130)
+
+
+def _missing(error: ImportError) -> str:
+    """Say in a line which library a command needs and does not find, or cannot load."""
+    library = (error.name or "a library").partition(".")[0]
+    package = {"OCP": "cadquery-ocp", "vtkmodules": "vtk", "PIL": "pillow"}.get(library, library)
+    return (
+        f"this command needs {library}, which cannot be imported ({' '.join(str(error).split())}); "
+        f"pip install {package}, and the system libraries that the README names"
+    )
 
 
 @app.callback(invoke_without_command=True)

@@ -77,18 +77,21 @@ def build_space(
     dict
         The residual of each airfoil's CST fit, RMS [chord].
     """
-    shapes = np.stack([landmarks(xy, n) for xy in airfoils.values()])
-    if count == 0:
-        about = f"{len(airfoils)} airfoils"
-        return ShapeSpace.fit(standardise(shapes)[0], modes=modes, about=about), {}
-    fits = [cst.fit(shape) for shape in shapes]
-    coefficients = np.stack([coefficients for coefficients, _ in fits])
-    drawn = cst.perturbations(coefficients, count, np.random.default_rng(seed), reach=reach)
-    space = ShapeSpace.fit(
-        cst.standardised_shapes(drawn, n),
-        modes=modes,
-        u=landmark_parameters(n),
-        about=f"{len(airfoils)} airfoils, {count} CST perturbations each of up to {reach:g}, "
-        f"seed {seed}",
-    )
-    return space, {name: residual for name, (_, residual) in zip(airfoils, fits, strict=True)}
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1):  # the same sums in the same order, whatever the machine
+        shapes = np.stack([landmarks(xy, n) for xy in airfoils.values()])
+        if count == 0:
+            about = f"{len(airfoils)} airfoils"
+            return ShapeSpace.fit(standardise(shapes)[0], modes=modes, about=about), {}
+        fits = [cst.fit(shape) for shape in shapes]
+        coefficients = np.stack([coefficients for coefficients, _ in fits])
+        drawn = cst.perturbations(coefficients, count, np.random.default_rng(seed), reach=reach)
+        space = ShapeSpace.fit(
+            cst.standardised_shapes(drawn, n),
+            modes=modes,
+            u=landmark_parameters(n),
+            about=f"{len(airfoils)} airfoils, {count} CST perturbations each of up to {reach:g}, "
+            f"seed {seed}",
+        )
+        return space, {name: residual for name, (_, residual) in zip(airfoils, fits, strict=True)}

@@ -18,6 +18,8 @@ from bladegen.errors import DefinitionError, Finding
 from bladegen.polars import Polar
 
 __all__ = [
+    "SMALLEST_RISE",
+    "SMALLEST_STEP",
     "Airfoil",
     "BladeDefinition",
     "Distribution",
@@ -27,9 +29,13 @@ __all__ = [
     "Station",
     "pchip",
     "stations_by_thickness",
+    "united",
 ]
 
 MIN_AIRFOIL_POINTS = 3
+SMALLEST_STEP = 1e-9  # of the span from station to station: a tenth of a micrometre
+SMALLEST_RISE = 1e-9  # m, of the axis' z from one grid point to the next
+STEEPEST = 1e15  # change over a whole span; steeper curves overflow
 THICKNESS_RIPPLE = 1e-4  # published curves ripple by 1e-5 about the thinnest airfoil (DTU 10 MW)
 AT_END = 1e-6  # of the span: a curve that ends level meets its end value as much too early
 MAX_AIRFOIL_POINTS = 5_000  # far above any published airfoil (399); bounds time and memory
@@ -47,7 +53,8 @@ def pchip(grid: Array, values: Array) -> Interpolant:
     """Interpolate monotonically between points (PCHIP), as windIO recommends."""
     from scipy.interpolate import PchipInterpolator
 
-    interpolant: Interpolant = PchipInterpolator(grid, values)
+    with np.errstate(over="ignore"):  # of 1 / slope, where slopes are denormal: they become 0
+        interpolant: Interpolant = PchipInterpolator(grid, values)
     return interpolant
 
 
@@ -139,6 +146,13 @@ class Distribution:
                 f"grid must increase strictly, got {grid[i]:g} then {grid[i + 1]:g} "
                 f"(entries {i} and {i + 1})"
             )
+        bad = np.flatnonzero(np.abs(np.diff(values / STEEPEST)) > np.diff(grid))
+        if bad.size:
+            i = int(bad[0])
+            raise DefinitionError(
+                f"values must not jump, got {values[i]:g} at {grid[i]:g} and {values[i + 1]:g} "
+                f"only {grid[i + 1] - grid[i]:g} on (entries {i} and {i + 1})"
+            )
         object.__setattr__(self, "grid", grid)
         object.__setattr__(self, "values", values)
 
@@ -157,6 +171,18 @@ class Distribution:
         inside = np.clip(eta, self.grid[0], self.grid[-1])
         result = np.asarray(self._interpolant(inside, nu=nu))
         return np.where(inside == eta, result, 0.0) if nu else result
+
+
+def united(*grids: ArrayLike) -> Array:
+    """Return the points of several grids in one, of points nearer than is allowed only the first.
+
+    >>> united([0.0, 0.1 + 0.2, 1.0], [0.3, 0.5]).tolist()
+    [0.0, 0.3, 0.5, 1.0]
+    """
+    merged = np.unique(np.concatenate([np.asarray(grid, dtype=np.float64) for grid in grids]))
+    kept: Array = merged[np.insert(np.diff(merged) >= SMALLEST_STEP, 0, True)]
+    kept[-1] = merged[-1]
+    return kept
 
 
 @dataclass(frozen=True)
@@ -243,7 +269,8 @@ class BladeDefinition:
         etas = [station.eta for station in self.stations]
         if len(etas) < 2:
             raise DefinitionError(f"{self.name}: {len(etas)} stations, at least 2 are needed")
-        if not (etas[0] >= 0 and etas[-1] <= 1 and bool(np.all(np.diff(etas) > 0))):
+        rising = bool(np.all(np.diff(etas) >= SMALLEST_STEP))
+        if not (etas[0] >= 0 and etas[-1] <= 1 and rising):
             raise DefinitionError(
                 f"{self.name}: stations must increase strictly within 0 to 1, got "
                 + ", ".join(f"{eta:g}" for eta in etas)
@@ -256,8 +283,9 @@ class BladeDefinition:
         if self.relative_thickness is not None:
             self._require_positive("relative_thickness", self.relative_thickness, "of chord")
         z = self.axis.z
-        if not bool(np.all(np.diff(z.values) > 0)):
-            i = int(np.flatnonzero(np.diff(z.values) <= 0)[0])
+        level = np.flatnonzero(np.diff(z.values) < SMALLEST_RISE)
+        if level.size:
+            i = int(level[0])
             raise DefinitionError(
                 f"{self.name}: reference axis z must increase from root to tip, got "
                 f"{z.values[i]:g} then {z.values[i + 1]:g} m at eta = {z.grid[i]:g} and "

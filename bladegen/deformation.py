@@ -14,7 +14,7 @@ import numpy as np
 
 from bladegen import grassmann
 from bladegen.arrays import Array, ArrayLike, readonly
-from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis, Station
+from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis, Station, united
 from bladegen.errors import PerturbationError
 from bladegen.pga import ShapeSpace
 
@@ -76,7 +76,7 @@ class Window:
 
     def with_ramp(self, grid: Array) -> Array:
         """Return a grid united with span fractions that resolve the rise."""
-        return np.union1d(grid, np.linspace(self.start, self.end, RAMP))
+        return united(grid, np.linspace(self.start, self.end, RAMP))
 
 
 def _is_round(station: Station) -> bool:

@@ -20,6 +20,7 @@ from bladegen.arrays import Array
 __all__ = ["AsGiven", "MinimumThickness", "Sharp", "TrailingEdge"]
 
 WINDOW = (0.5, 0.8)  # of chord: nothing moves ahead of the first, all moves behind the second
+LEAST_WEDGE = 0.25  # of the edge's height: what a closed edge keeps at the window's end
 
 
 class TrailingEdge(Protocol):
@@ -61,11 +62,22 @@ class MinimumThickness:
 
 @dataclass(frozen=True)
 class Sharp:
-    """Trailing edges closed to a line, by a wedge that ends in the window."""
+    """Trailing edges closed to a line, by a wedge that ends in the window.
+
+    Where the sides come closer ahead of the edge than at it, the wedge alone would carry them
+    through each other; they are kept apart by a thin one that is lost in the sides elsewhere.
+    Opposite landmarks move along the line that joins them, so that sides that do not cross still
+    do not.
+    """
 
     def __call__(self, profiles: Array, chord: Array) -> Array:  # noqa: ARG002
         half, middle = _halves(profiles)
-        return _joined(profiles, half - half[:, :1] * _window(middle)[..., None], middle)
+        window, height = _window(middle), half[..., 1]
+        edge = np.maximum(height[:, :1], 0.0)
+        ahead = np.maximum(middle[:, :1, 0] - middle[..., 0], 0.0) / (1.0 - WINDOW[1])
+        closed = _above(height - edge * window, LEAST_WEDGE * edge * window * ahead)
+        share = np.divide(closed, height, out=np.ones_like(height), where=height > 0)
+        return _joined(profiles, half * share[..., None], middle)
 
 
 def _halves(profiles: Array) -> tuple[Array, Array]:
@@ -80,6 +92,13 @@ def _joined(profiles: Array, half: Array, middle: Array) -> Array:
     m = half.shape[1]
     result = profiles.copy()
     result[:, :m], result[:, : -m - 1 : -1] = middle + half, middle - half
+    return result
+
+
+def _above(values: Array, least: Array) -> Array:
+    """Return values kept above `least`, smoothly, and as they are far above it or where it is 0."""
+    free = values - least
+    result: Array = least + 0.5 * (free + np.hypot(free, least))
     return result
 
 

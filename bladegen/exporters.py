@@ -56,7 +56,7 @@ class Options:
     step_schema : str
         STEP: "ap242" or "ap214".
     timestamp : str, optional
-        STEP: the time in the header, ISO 8601, instead of now.
+        STEP and IGES: the time in the header, ISO 8601, instead of now.
     spans : (k,) array, optional
         Solids: sections to begin with, such as those of a blade that is alike.
     spacing : Spacing
@@ -160,7 +160,7 @@ def _write_step(products: Products, path: Path) -> None:
 
 
 def _write_iges(products: Products, path: Path) -> None:
-    cad_files.write_iges(products.solid, path)
+    cad_files.write_iges(products.solid, path, timestamp=products.options.timestamp)
 
 
 def _write_brep(products: Products, path: Path) -> None:
@@ -195,7 +195,7 @@ def _write_glb(products: Products, path: Path) -> None:
 
 def _write_3mf(products: Products, path: Path) -> None:
     scaled = mesh.to_trimesh(products.mesh, scale=UNITS["mm"])
-    path.write_bytes(scaled.export(file_type="3mf"))
+    path.write_bytes(mesh.with_steady_ids(scaled.export(file_type="3mf")))
 
 
 def _write_vtp(products: Products, path: Path) -> None:

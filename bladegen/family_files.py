@@ -29,7 +29,7 @@ from bladegen.families import BLOCK, Block
 from bladegen.files import folder, replacing
 from bladegen.identity import differences
 
-__all__ = ["FamilyFolder", "digest_of", "read_manifest", "sections_digest"]
+__all__ = ["FamilyFolder", "read_manifest", "sections_digest"]
 
 ZARR = "sections.zarr"
 FLOAT_TYPES = {"float32": np.float32, "float64": np.float64}
@@ -108,7 +108,11 @@ class FamilyFolder:
             If another run holds it.
         """
         folder(self.path)
-        with (self.path / ".lock").open("w") as lock:
+        try:
+            lock = (self.path / ".lock").open("w")
+        except OSError as error:
+            raise ExportError(f"{self.path}: cannot be written: {error.strerror}") from None
+        with lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except OSError:
@@ -204,12 +208,6 @@ def sections_digest(sections: Any) -> str:
     """Return the SHA-256 of one variant's sections, little-endian, as hex digits."""
     data = np.ascontiguousarray(sections).astype(sections.dtype.newbyteorder("<"), copy=False)
     return hashlib.sha256(data.tobytes()).hexdigest()
-
-
-def digest_of(path: Path) -> str:
-    """Return the SHA-256 of a file as hex digits."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _table(rows: dict[str, Any]) -> Any:

@@ -18,8 +18,8 @@ from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, FamilyError, ToleranceError
 from bladegen.families import BLOCK, Block, Family
-from bladegen.family_files import FLOAT_TYPES, FamilyFolder, digest_of, sections_digest
-from bladegen.files import folder
+from bladegen.family_files import FLOAT_TYPES, FamilyFolder, sections_digest
+from bladegen.files import digest_of, folder
 from bladegen.identity import fingerprint, identity
 from bladegen.net import fitted
 from bladegen.spanwise import UNITS

@@ -1,5 +1,8 @@
 """Files that are whole or not there: written under a temporary name, then renamed."""
 
+import errno
+import fcntl
+import hashlib
 import os
 import re
 import tempfile
@@ -9,7 +12,9 @@ from pathlib import Path
 
 from bladegen.errors import ExportError
 
-__all__ = ["folder", "replacing", "safe_stem"]
+__all__ = ["alone", "digest_of", "folder", "replacing", "require_end", "safe_stem"]
+
+END_SLACK = 8  # bytes of line ends behind the last word
 
 
 @contextmanager
@@ -39,6 +44,69 @@ def replacing(path: Path) -> Iterator[Path]:
         raise ExportError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def alone(path: Path, stem: str) -> Iterator[None]:
+    """Hold the files of a stem in a folder, so that no second run writes the same ones.
+
+    What is held is a hidden file that is gone afterwards; that of a killed run is in nobody's way.
+
+    Raises
+    ------
+    ExportError
+        If another run holds them, or the folder cannot be written.
+    """
+    lock = path / f".{stem}.lock"
+    while True:
+        try:
+            held = lock.open("w")
+        except OSError as error:
+            raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
+        with held:
+            try:
+                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError as error:
+                if error.errno in _TAKEN:
+                    raise ExportError(f"{path}: another run is writing {stem} there") from None
+            if not _is_at(held.fileno(), lock):
+                continue  # its last holder took it away in between
+            try:
+                yield
+            finally:
+                lock.unlink(missing_ok=True)
+        return
+
+
+_TAKEN = (errno.EWOULDBLOCK, errno.EACCES)  # other errors: a file system without locks
+
+
+def _is_at(handle: int, path: Path) -> bool:
+    """Tell whether an open file is still the one at a path."""
+    try:
+        return os.path.samestat(os.fstat(handle), path.stat())
+    except FileNotFoundError:
+        return False
+
+
+def digest_of(path: Path) -> str:
+    """Return the SHA-256 of a file as hex digits."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def require_end(path: Path, mark: bytes) -> None:
+    """See that a file that a library wrote ends as it must; not all notice a full disk.
+
+    Raises
+    ------
+    OSError
+        If it does not, which `replacing` turns into an `ExportError`.
+    """
+    with path.open("rb") as stream:
+        stream.seek(max(0, path.stat().st_size - len(mark) - END_SLACK))
+        if mark not in stream.read():
+            raise OSError(errno.ENOSPC, "the file ends early, is the disk full?")
 
 
 def folder(path: Path) -> Path:

@@ -7,6 +7,7 @@ imported when first needed.
 """
 
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from bladegen.arrays import Array, Indices
 from bladegen.grid import Block, Corner, Grid, Interface
+from bladegen.vtk_files import save
 
 __all__ = [
     "welded",
@@ -87,7 +89,7 @@ def write_vtu(grid: Grid, path: Path, *, scale: float = 1.0) -> None:
     for family in _families(grid):
         belongs = [block.family == family for block in grid.blocks]
         data.cell_data[family] = np.repeat(np.array(belongs, dtype=np.uint8), sizes)
-    data.save(str(path))
+    save(data, path)
 
 
 def welded(grid: Grid) -> tuple[Indices, Indices]:
@@ -116,7 +118,8 @@ def write_cgns(grid: Grid, path: Path) -> None:
     """Write a grid as CGNS in metres."""
     import h5py
 
-    with h5py.File(path, "w", track_order=True, libver=("earliest", "v108")) as file:
+    memory = BytesIO()  # at a full disk HDF5 cannot close its file
+    with h5py.File(memory, "w", track_order=True, libver=("earliest", "v108")) as file:
         _attributes(file, "HDF5 MotherNode", "Root Node of HDF5 File", "MT")
         file.create_dataset(" format", data=_text("IEEE_LITTLE_32", 15))
         version = f"HDF5 Version {h5py.version.hdf5_version}"
@@ -136,6 +139,7 @@ def write_cgns(grid: Grid, path: Path) -> None:
             _node(node, "FamilyBC", "FamilyBC_t", WALL)
         for number, block in enumerate(grid.blocks):
             _zone(base, grid, number, block)
+    path.write_bytes(memory.getbuffer())
 
 
 def _zone(base: Any, grid: Grid, number: int, block: Block) -> None:

@@ -35,6 +35,7 @@ __all__ = [
 Spacing = Callable[[Array], Array]
 
 REPEATED = 1e-9  # chords; points nearer than this are one point
+LARGEST = 1e6  # chords; points farther apart than this cannot be told from repeated ones
 CORNER_TURN = np.radians(40.0)  # leading edges turn by up to 28 degrees a point in real files
 BLUNT_BASE = 0.02  # chords; corners nearer than this to the trailing edge end the sides
 BLUNT_MINIMUM = 1e-3  # chords; a base lower than this is rounding, not a flatback
@@ -157,8 +158,10 @@ def oriented(coordinates: Array) -> Array:
 
     Suction side first is counter-clockwise with x to the trailing edge and y to suction.
     """
-    steps = np.hypot(*np.diff(coordinates, axis=0).T)
-    points: Array = coordinates[np.concatenate([[True], steps > REPEATED])]
+    extent = float(np.ptp(coordinates, axis=0).max())
+    if not extent <= LARGEST:
+        raise GeometryError(f"airfoil spans {extent:g} chords, allowed is up to {LARGEST:g}")
+    points = _distinct(coordinates)
     if len(points) < 3:
         raise GeometryError(f"airfoil has {len(points)} distinct points, at least 3 are needed")
     x, y = points.T
@@ -166,6 +169,13 @@ def oriented(coordinates: Array) -> Array:
     if abs(area) < REPEATED:
         raise GeometryError(f"airfoil encloses an area of {area:.1e} chord^2, needs more than 0")
     return points if area > 0 else points[::-1]
+
+
+def _distinct(points: Array) -> Array:
+    """Drop points that repeat the one before them."""
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    kept: Array = points[np.concatenate([[True], steps > REPEATED])]
+    return kept
 
 
 def contour(coordinates: Array, *, fairing: float | None = None) -> Contour:
@@ -197,7 +207,7 @@ def _without_base(points: Array) -> tuple[Array, float]:
     sides = points[suction : len(points) - pressure]
     first = _prolonged(sides[0], sides[1], x)
     last = _prolonged(sides[-1], sides[-2], x)
-    opened = np.concatenate([first[None], sides, last[None]])
+    opened = _distinct(np.concatenate([first[None], sides, last[None]]))
     return opened, float(np.hypot(*(first - last)))
 
 
@@ -212,9 +222,15 @@ def _base_corner(points: Array) -> int:
 
 
 def _prolonged(corner: Array, before: Array, x: float) -> Array:
-    """Prolong the line from `before` through `corner` to the abscissa `x`."""
-    slope = (corner[1] - before[1]) / (corner[0] - before[0])
-    return np.array([x, corner[1] + slope * (x - corner[0])])
+    """Prolong the line from `before` through `corner` to the abscissa `x`, if it gets there.
+
+    A line so steep that it would end far from the corner ends in it.
+    """
+    run, rise = corner - before
+    missing = x - corner[0]
+    if abs(missing * rise) > BLUNT_BASE * abs(run):
+        return corner
+    return np.array([x, corner[1] + (missing * rise / run if missing else 0.0)])
 
 
 def _spline(points: Array) -> "PPoly":

@@ -6,6 +6,11 @@ across the tip round it.  The mesh is watertight and its triangles face outward.
 those of the sections, metres.
 """
 
+import hashlib
+import io
+import re
+import uuid
+import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +29,7 @@ __all__ = [
     "from_blade",
     "surface",
     "to_trimesh",
+    "with_steady_ids",
 ]
 
 ACROSS = 16  # quads across a rounded tip
@@ -151,6 +157,29 @@ def assembled(parts: Sequence[tuple[str, TriangleMesh, Array, Array]]) -> bytes:
             known[id(mesh)] = name
     data: bytes = scene.export(file_type="glb")
     return data
+
+
+def with_steady_ids(package: bytes) -> bytes:
+    """Return a 3MF file with identifiers that follow from its content, instead of random ones."""
+    with zipfile.ZipFile(io.BytesIO(package)) as archive:
+        members = [(info, archive.read(info)) for info in archive.infolist()]
+    plain = b"".join(_UUID.sub(b"", content) for _, content in members)
+    seed = hashlib.sha256(plain).hexdigest()
+    known: dict[bytes, bytes] = {}
+
+    def steady(found: re.Match[bytes]) -> bytes:
+        name = f"{seed}/{len(known)}"
+        known.setdefault(found[0], str(uuid.uuid5(uuid.NAMESPACE_OID, name)).encode())
+        return known[found[0]]
+
+    result = io.BytesIO()
+    with zipfile.ZipFile(result, "w") as archive:
+        for info, content in members:
+            archive.writestr(info, _UUID.sub(steady, content))
+    return result.getvalue()
+
+
+_UUID = re.compile(rb"(?<=UUID=\")[0-9a-fA-F-]{36}(?=\")")
 
 
 def read(path: Path) -> Any:

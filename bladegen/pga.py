@@ -6,7 +6,7 @@ the principal modes; a shape of the learned manifold is exp(mean, sum_k t_k mode
 Fletcher, Lu & Joshi 2003).  Coordinates are radians: |t| is the distance from the mean.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -24,6 +24,9 @@ ARRAYS = ("u", "mean", "modes", "variances", "coordinates")
 CHUNK = 1000  # shapes handled at once: bounds memory to some tens of megabytes
 TOLERANCE = 1e-10  # mean tangent at the Karcher mean [rad]
 STEPS = 100
+ORTHONORMAL = 1e-8  # saved bases are orthonormal to rounding
+NO_SPREAD = 1e-9  # rad; shapes that vary less along a mode do not vary along it
+FARTHEST = np.pi / np.sqrt(2.0)  # rad, the distance at which both principal angles are 90 degrees
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +81,7 @@ class ShapeSpace:
         Raises
         ------
         SpaceError
-            If there are too few shapes for the modes.
+            If there are too few shapes, or too few that differ, for the modes.
         GeometryError
             If the Karcher mean does not converge.
         """
@@ -96,6 +99,9 @@ class ShapeSpace:
         from scipy.linalg import eigh
 
         variances = np.maximum(np.linalg.eigvalsh(gram / count)[::-1], 0.0)
+        if not variances[modes - 1] >= NO_SPREAD**2:
+            spread = int(np.count_nonzero(variances >= NO_SPREAD**2))
+            raise SpaceError(f"modes: got {modes}, the shapes vary in {spread} directions only")
         _, vectors = eigh(gram, subset_by_index=[2 * n - modes, 2 * n - 1])
         kept = _horizontal(mean, vectors[:, ::-1].T.reshape(modes, n, 2))
         space = cls(
@@ -121,9 +127,13 @@ class ShapeSpace:
         Raises
         ------
         SpaceError
-            If the file is no space, is of another version, or is damaged.
+            If the file is no space, is of another version, is damaged, or holds arrays that are
+            no mean, modes and spread.
         """
         arrays, about = load_arrays(Path(path), ARRAYS)
+        problem = _problem(arrays)
+        if problem is not None:
+            raise SpaceError(f"{path}: is no shape space: {problem}")
         return cls(**arrays, about=about)
 
     def save(self, path: str | Path) -> None:
@@ -260,6 +270,59 @@ def _karcher_mean(points: Array) -> Array:
         f"Karcher mean of {count} shapes: not converged after {STEPS} steps: the mean tangent is "
         f"{length:.1e} rad, allowed is {TOLERANCE:.1e}"
     )
+
+
+def _problem(arrays: dict[str, Array]) -> str | None:
+    """Say what keeps a file's arrays from being a space, or None."""
+    for name, array in arrays.items():
+        if array.dtype != np.float64 or not np.isfinite(array).all():
+            return f"{name} must be finite numbers in double precision"
+    sizes = {name: len(array) if array.ndim else 0 for name, array in arrays.items()}
+    n, r, m = sizes["u"], sizes["modes"], sizes["coordinates"]
+    wanted = {"u": (n,), "mean": (n, 2), "modes": (r, n, 2), "coordinates": (m, r)}
+    for name, shape in (wanted | {"variances": (sizes["variances"],)}).items():
+        if arrays[name].shape != shape:
+            return f"{name} has the shape {arrays[name].shape}, must be {shape}"
+    if n < 3 or not 1 <= r <= sizes["variances"] or m < 1:
+        return f"{n} landmarks, {r} modes of {sizes['variances']} variances, {m} shapes: too few"
+    return next((said for said, holds in _RULES if not holds(arrays)), None)
+
+
+def _orthonormal(basis: Array) -> bool:
+    """Tell whether columns (n, k) are orthonormal to rounding, none too large to be multiplied."""
+    small = np.abs(basis).max() < 2.0
+    return bool(small and np.abs(basis.T @ basis - np.eye(basis.shape[1])).max() < ORTHONORMAL)
+
+
+_RULES: tuple[tuple[str, Callable[[dict[str, Array]], bool]], ...] = (
+    (
+        "u must increase within 0 to 1",
+        lambda a: bool(a["u"][0] >= 0 and a["u"][-1] <= 1 and np.all(np.diff(a["u"]) > 0)),
+    ),
+    ("mean must be an orthonormal basis", lambda a: _orthonormal(a["mean"])),
+    (
+        "modes must be orthonormal",
+        lambda a: _orthonormal(a["modes"].reshape(len(a["modes"]), -1).T),
+    ),
+    (
+        "modes must be tangent at the mean",
+        lambda a: bool(np.abs(a["mean"].T @ a["modes"]).max() < ORTHONORMAL),
+    ),
+    (
+        f"variances of its modes must be {NO_SPREAD**2:g} to {FARTHEST**2:.3g} rad^2",
+        lambda a: bool(
+            a["variances"][len(a["modes"]) - 1] >= NO_SPREAD**2 and a["variances"][0] <= FARTHEST**2
+        ),
+    ),
+    (
+        "variances must fall and not be negative",
+        lambda a: bool(np.all(np.diff(a["variances"]) <= 0) and a["variances"][-1] >= 0),
+    ),
+    (
+        f"coordinates must lie within {FARTHEST:.3g} rad",
+        lambda a: bool(np.abs(a["coordinates"]).max() <= FARTHEST),
+    ),
+)
 
 
 def _parameters(n: int) -> Array:

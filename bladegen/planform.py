@@ -23,6 +23,7 @@ from bladegen.definition import BladeDefinition, ReferenceAxis
 
 __all__ = ["Frames", "Planform", "SectionPlanes", "normal_to_axis", "normal_to_z", "placement"]
 
+AT_REST = 1e-6  # of the span, from an end at which the axis has no velocity
 FRAME_STEPS = 2000  # spans at which frames are carried; a sweep of 10 % turns by 1e-4 rad a step
 
 Frames = Callable[[Array], Array]
@@ -65,7 +66,12 @@ def _running_product(matrices: Array) -> Array:
 
 
 def _tangents(axis: ReferenceAxis, eta: Array) -> Array:
-    along = axis(np.clip(eta, axis.z.grid[0], axis.z.grid[-1]), 1)
+    start, end = axis.z.grid[0], axis.z.grid[-1]
+    along = axis(np.clip(eta, start, end), 1)
+    still = ~np.any(along, axis=-1, keepdims=True)
+    if still.any():  # monotone splines may start from rest: the direction just inside holds
+        inside = np.clip(eta, start + AT_REST * (end - start), end - AT_REST * (end - start))
+        along = np.where(still, axis(inside, 1), along)
     unit: Array = along / np.linalg.norm(along, axis=-1, keepdims=True)
     return unit
 

@@ -20,6 +20,7 @@ from bladegen.definition import (
     ReferenceAxis,
     Station,
     pchip,
+    united,
 )
 from bladegen.errors import Finding
 from bladegen.landmarks import contour
@@ -70,7 +71,7 @@ def redefined(blade: "Blade", *, tolerance: float = TOLERANCE) -> BladeDefinitio
         wide = (off > tolerance) & (np.diff(eta) > CLOSEST)
         if not wide.any() or len(eta) + np.count_nonzero(wide) > MOST_STATIONS:
             break
-        eta = np.union1d(eta, (0.5 * (eta[:-1] + eta[1:]))[wide])
+        eta = united(eta, (0.5 * (eta[:-1] + eta[1:]))[wide])
     definition = shapes.moved(definition, eta, SHARE * tolerance)
     said = (
         f"{len(eta)} stations, {len(eta) - len(blade.eta)} of them between those of the "
@@ -91,7 +92,7 @@ def sampled(quantity: Callable[[Array], Array], grid: Array, tolerance: float) -
         wide = (off > tolerance) & (np.diff(grid) > CLOSEST)
         if not wide.any() or len(grid) + np.count_nonzero(wide) > MOST_POINTS:
             return result
-        grid = np.union1d(grid, (0.5 * (grid[:-1] + grid[1:]))[wide])
+        grid = united(grid, (0.5 * (grid[:-1] + grid[1:]))[wide])
 
 
 def _sampled_planform(blade: "Blade", tolerance: float) -> BladeDefinition:
@@ -211,12 +212,12 @@ class _Shapes:
             return definition
         if definition.pitch_axis is not None:
             pitch = definition.pitch_axis
-            grid = np.union1d(pitch.grid, eta)
+            grid = united(pitch.grid, eta)
             longest = float(definition.chord.values.max())
             made = sampled(lambda at: pitch(at) - nose(at), grid, share / longest)
             return replace(definition, pitch_axis=made)
         offset, chord = definition.offset_y, definition.chord
-        grid = np.union1d(chord.grid, eta)
+        grid = united(chord.grid, eta)
         made = sampled(lambda at: offset(at) - chord(at) * nose(at), grid, share)
         return replace(definition, section_offset_y=made)
 

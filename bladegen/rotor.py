@@ -18,6 +18,7 @@ from bladegen.blade import Blade
 from bladegen.cad import MILLIMETRES, Solid
 from bladegen.cad_files import triangulated
 from bladegen.errors import CadError
+from bladegen.files import require_end
 from bladegen.mesh import TriangleMesh, assembled
 
 __all__ = ["Rotor", "rotor_of", "write_glb", "write_step"]
@@ -118,6 +119,7 @@ def write_step(rotor: Rotor, solid: Solid, path: Path) -> None:
     assembly.add(_spinner(rotor.spinner_radius), name="spinner")
     if not assembly.export(str(path), exportType="STEP"):
         raise CadError(f"{path}: OCCT could not write the assembly")
+    require_end(path, b"END-ISO-10303-21;")
 
 
 def write_glb(rotor: Rotor, mesh: TriangleMesh, path: Path) -> None:

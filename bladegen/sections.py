@@ -280,11 +280,11 @@ class SectionCurves:
     def _height(self) -> Array:
         """Largest height between the sides at one x, (k,)."""
         middle = len(self.u) // 2
-        reach = min(WINDOW, (middle - 3) // 2)
+        reach = max(0, min(WINDOW, (middle - 3) // 2))
         paired = self.points[:, :middle, 1] - self.points[:, :middle:-1, 1]
         best = np.argmax(paired, axis=1)
         for _ in range(middle):
-            best = np.clip(best, reach + 1, middle - reach - 2)
+            best = np.clip(best, reach + 1, max(reach + 1, middle - reach - 2))
             window = best[:, None] + np.arange(-reach, reach + 1)
             heights = self._gap(self.u[window], 1.0 - self.u[window])[0]
             found = window[np.arange(len(best)), np.argmax(heights, axis=1)]

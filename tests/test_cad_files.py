@@ -76,3 +76,11 @@ def test_other_files_are_refused(tmp_path, suffix):
     path.write_text("nothing of the kind\n")
     with pytest.raises(CadError, match="OCCT can read"):
         cad_files.read(path)
+
+
+def test_times_that_are_none_are_refused(solid, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "9" * 30)
+    for write in (cad_files.write_step, cad_files.write_iges):
+        with pytest.raises(CadError, match="SOURCE_DATE_EPOCH: got 999"):
+            write(solid, tmp_path / "a")
+    assert list(tmp_path.iterdir()) == []

@@ -158,6 +158,19 @@ def test_an_interrupt_is_said_shortly(monkeypatch, capsys):
     assert capsys.readouterr().err == "bladegen: interrupted\n"
 
 
+def test_a_missing_library_is_said_in_a_line(monkeypatch, capsys):
+    def unloadable():
+        raise ImportError("libGL.so.1: cannot open shared object file\n", name="OCP.gp")
+
+    monkeypatch.setattr(cli, "app", unloadable)
+    with pytest.raises(SystemExit, match="1"):
+        cli.main()
+    said = capsys.readouterr().err
+    assert said.startswith("bladegen: this command needs OCP, which cannot be imported (libGL.so.1")
+    assert "pip install cadquery-ocp" in said
+    assert said.count("\n") == 1
+
+
 def test_perturb_builds_a_variant_and_says_what_was_changed(tmp_path):
     result = run(
         "perturb", "nrel5mw", "-o", tmp_path, "--pga", "0.03,-0.02,0.01,0", "--thickness", 1.05,

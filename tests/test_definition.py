@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -97,6 +98,13 @@ def test_derivatives_agree_with_differences():
     assert_allclose(quantity(eta, nu=1), difference, atol=1e-4)
 
 
+def test_denormal_steps_are_no_steps():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        values = Distribution([0.0, 0.3, 0.6, 1.0], [0.0, 5e-324, 1e-323, 1.0])([0.1, 0.5, 0.9])
+    assert np.all((values >= 0.0) & (values <= 1.0))
+
+
 def test_a_constant_and_a_spline_of_ones_own():
     assert_array_equal(Distribution.constant(3.5)([0.0, 0.4, 1.0]), [3.5, 3.5, 3.5])
 
@@ -119,6 +127,8 @@ def test_a_constant_and_a_spline_of_ones_own():
         ([-0.1, 1.0], [1.0, 2.0], "grid runs -0.1 to 1, allowed is 0 to 1"),
         ([0.0, 0.6, 0.5, 1.0], [1.0] * 4, r"got 0.6 then 0.5 \(entries 1 and 2\)"),
         ([0.0, 0.5, 0.5, 1.0], [1.0] * 4, r"got 0.5 then 0.5 \(entries 1 and 2\)"),
+        ([0.0, 1e-300, 1.0], [0.0, 1.0, 2.0], r"must not jump, got 0 at 0 and 1 only 1e-300 on"),
+        ([0.0, 0.5, 1.0], [-1e308, 1e308, 0.0], "must not jump"),
     ],
 )
 def test_a_bad_distribution_is_refused(grid, values, said):
@@ -196,6 +206,10 @@ LINE = Distribution.constant(0.0)
             "stations must increase strictly within 0 to 1, got 0, 0.5, 0.5",
         ),
         (
+            {"stations": tuple(Station(eta, AIRFOIL) for eta in (0.0, 1e-300, 1.0))},
+            "stations must increase strictly within 0 to 1, got 0, 1e-300, 1",
+        ),
+        (
             {"stations": (Station(0.0, AIRFOIL), Station(1.2, AIRFOIL))},
             "strictly within 0 to 1, got 0, 1.2",
         ),
@@ -211,6 +225,10 @@ LINE = Distribution.constant(0.0)
         (
             {"axis": ReferenceAxis(LINE, LINE, Distribution([0.0, 0.4, 1.0], [0.0, 5.0, 4.0]))},
             "z must increase from root to tip, got 5 then 4 m at eta = 0.4 and 1",
+        ),
+        (
+            {"axis": ReferenceAxis(LINE, LINE, Distribution([0.0, 0.4, 1.0], [0, 1e-320, 4.0]))},
+            "z must increase from root to tip, got 0 then",
         ),
     ],
 )

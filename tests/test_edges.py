@@ -50,6 +50,21 @@ def test_sharp_edges_are_closed_and_meet_only_there(xy):
     assert_allclose(finished[0], finished[-1], atol=1e-15)
 
 
+@given(airfoils(), st.floats(0.001, 0.02), st.floats(0.05, 0.9), st.floats(0.82, 0.98))
+def test_a_tail_thinner_than_its_edge_is_closed_without_crossing(xy, edge, waist, at):
+    profile = landmarks(xy, 401)[None].copy()
+    half = np.interp(profile[0, :200, 0], [0.5, at, 1.0], [0.02, waist * edge, edge])
+    behind = profile[0, :200, 0] > 0.5
+    middle = 0.5 * (profile[0, :200] + profile[0, :-201:-1])
+    for side, sign in ((slice(None, 200), 1.0), (slice(None, -201, -1), -1.0)):
+        profile[0, side][behind] = (middle + np.stack([0 * half, sign * half], axis=-1))[behind]
+    finished = Sharp()(profile, np.array([1.0]))[0]
+    closed = 0.5 * (finished[:200, 1] - finished[:-201:-1, 1])
+    assert_allclose(closed[0], 0.0, atol=1e-15)
+    assert np.all(closed[1:][behind[1:]] > 0)
+    assert_allclose(finished[~(finished[:, 0] > 0.5)], profile[0][~(profile[0, :, 0] > 0.5)])
+
+
 def test_as_given_changes_nothing():
     profile = landmarks(circle(), 401)[None]
     assert AsGiven()(profile, np.array([1.0])) is profile

@@ -139,7 +139,9 @@ def test_a_failing_writer_leaves_nothing(blade, tmp_path, monkeypatch):
         path.write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setitem(exporters.FORMATS, ".stl", exporters.Format("broken", fail))
+    monkeypatch.setitem(
+        exporters.FORMATS, ".stl", exporters.Format(exporters.Kind.triangles, "broken", fail)
+    )
     with pytest.raises(ExportError, match="No space left"):
         bg.export(blade, tmp_path / "blade.stl")
     assert list(tmp_path.iterdir()) == []

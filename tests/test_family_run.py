@@ -16,8 +16,9 @@ import bladegen as bg
 from bladegen import cad, cad_files, checks, mesh
 from bladegen.errors import BladegenError
 from bladegen.families import BLOCK
-from bladegen.family_files import FamilyFolder, digest_of, sections_digest
+from bladegen.family_files import FamilyFolder, sections_digest
 from bladegen.family_run import Order, run
+from bladegen.files import digest_of
 from bladegen.properties import volume
 
 SPANS = 16

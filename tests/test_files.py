@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bladegen.errors import ExportError
-from bladegen.files import folder, replacing, safe_stem
+from bladegen.files import alone, folder, replacing, require_end, safe_stem
 
 
 def test_a_whole_file_replaces_the_old_one(tmp_path):
@@ -91,3 +91,50 @@ def test_names_never_become_paths(name):
     assert "\\" not in stem
     assert not stem.startswith((".", "-"))
     assert stem.isascii()
+
+
+def test_files_of_one_stem_are_held_by_one_run(tmp_path):
+    with alone(tmp_path, "blade"):
+        held = alone(tmp_path, "blade")
+        with pytest.raises(ExportError, match="another run is writing blade there"):
+            held.__enter__()
+        with alone(tmp_path, "other"):
+            pass
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / ".blade.lock").write_text("")  # of a run that was killed
+    with alone(tmp_path, "blade"):
+        assert (tmp_path / ".blade.lock").exists()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_lock_that_its_holder_took_away_is_made_anew(tmp_path, monkeypatch):
+    import fcntl
+
+    def flock(handle, how):
+        if not tried:
+            (tmp_path / ".blade.lock").unlink()  # the last holder ends in between
+        tried.append(how)
+        if len(tried) == 2:
+            raise OSError(37, "No locks available")  # and goes without where there are none
+
+    tried = []
+    monkeypatch.setattr(fcntl, "flock", flock)
+    with alone(tmp_path, "blade"):
+        assert (tmp_path / ".blade.lock").exists()
+    assert len(tried) == 2
+
+
+def test_a_file_that_ends_early_is_a_full_disk(tmp_path):
+    target = tmp_path / "a.vtp"
+
+    def write(content):
+        with replacing(target) as temporary:
+            temporary.write_bytes(content)
+            require_end(temporary, b"</VTKFile>")
+
+    write(b"<VTKFile>" + bytes(999) + b"</VTKFile>\n")
+    whole = target.read_bytes()
+    for content in (b"", b"</VTKFile>" + bytes(999)):
+        with pytest.raises(ExportError, match="ends early"):
+            write(content)
+    assert target.read_bytes() == whole

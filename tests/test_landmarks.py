@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from bladegen import landmarks as lm
 from bladegen.errors import GeometryError
-from strategies import airfoils, circle, ellipse
+from strategies import airfoils, circle, ellipse, naca
 
 COUNTS = st.sampled_from([51, 101, 401])
 
@@ -77,6 +77,32 @@ def test_a_circle_is_a_circle():
     points = lm.landmarks(circle(), 401)
     assert_allclose(np.linalg.norm(points - [0.5, 0.0], axis=1), 0.5, atol=1e-6)
     assert_allclose(points[200], [0.0, 0.0], atol=1e-6)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize("lean", [0.0, 1e-3, -1e-3])
+def test_an_upright_base_closed_to_a_point_is_opened_at_its_corners(order, lean):
+    open_ = naca(0.3, 0.02, 0.03)
+    closed = np.concatenate([[[1.0 + lean, 0.0]], open_, [[1.0 + lean, 0.0]]])[::order]
+    curve = lm.contour(closed)
+    assert curve.opened == pytest.approx(0.03, rel=0.05)
+    placed = curve.landmarks(lm.landmark_parameters(101))
+    assert_allclose(placed, lm.landmarks(open_, 101), atol=1e-3 + 2 * abs(lean))
+
+
+def test_a_base_whose_side_runs_straight_up_ends_in_its_corner():
+    steep = naca(0.3, 0.02, 0.03)
+    steep[1] = steep[0] + [0.0, 0.01]
+    closed = np.concatenate([[[1.0, 0.0]], steep, [[1.0, 0.0]]])
+    placed = lm.landmarks(closed, 101)
+    assert np.isfinite(placed).all()
+    assert placed[:, 0].max() < 1.01
+
+
+@pytest.mark.parametrize("size", [1e7, 1e200])
+def test_points_too_far_apart_for_their_digits_are_refused(size):
+    with pytest.raises(GeometryError, match="allowed is up to 1e"):
+        lm.landmarks(ellipse(0.2) * size, 51)
 
 
 def test_a_blunt_base_closed_to_a_point_is_opened():

@@ -177,3 +177,9 @@ def test_any_number_of_landmarks_can_be_learned_from(n):
     space = ShapeSpace.fit(near, modes=2)
     assert space.u.shape == (n,)
     assert_allclose(space.encode(space.decode([0.1, -0.05])), [0.1, -0.05], atol=1e-12)
+
+
+def test_modes_along_which_nothing_varies_are_refused():
+    points = random_points(np.random.default_rng(2), 1, 12)
+    with pytest.raises(SpaceError, match="got 1, the shapes vary in 0 directions only"):
+        ShapeSpace.fit(np.repeat(points, 5, axis=0), modes=1)

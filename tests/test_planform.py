@@ -40,6 +40,13 @@ def test_frames_of_a_bent_axis_turn_about_y_only():
     assert_allclose(frames[:, 1], np.broadcast_to([0.0, 1.0, 0.0], (33, 3)), atol=1e-12)
 
 
+@pytest.mark.parametrize("values", [(0.0, 1.0, 100.0), (0.0, 99.0, 100.0)])
+def test_an_axis_whose_spline_starts_or_ends_at_rest_has_frames(values):
+    axis = ReferenceAxis(line(0.0, 0.0), line(0.0, 0.0), line(*values))
+    assert not axis(ETA[[0, -1]], 1).any(axis=1).all()
+    assert_allclose(normal_to_axis(axis)(ETA), np.broadcast_to(np.eye(3), (33, 3, 3)), atol=1e-12)
+
+
 def test_frames_normal_to_z_stay():
     axis = ReferenceAxis(line(0.0, -4.0), line(0.0, 1.0), line(0.0, 100.0))
     assert_allclose(normal_to_z(axis)(ETA), np.broadcast_to(np.eye(3), (33, 3, 3)))

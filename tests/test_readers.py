@@ -466,9 +466,9 @@ def test_reading_does_not_import_scipy():
 
 BAD_VALUES: list[tuple[str, str, Any, list[str]]] = [
     # name, place, value, what the message says
-    ("chord negative", f"{SHAPE}.chord.values[3]", -1.2, ["-1.2", "above 0 to 100 m"]),
-    ("chord zero", f"{SHAPE}.chord.values[0]", 0, ["got 0", "above 0 to 100 m"]),
-    ("chord in millimetres", f"{SHAPE}.chord.values[1]", 1500.0, ["1500.0", "above 0 to 100 m"]),
+    ("chord negative", f"{SHAPE}.chord.values[3]", -1.2, ["-1.2", "1e-06 to 100 m"]),
+    ("chord zero", f"{SHAPE}.chord.values[0]", 0, ["got 0", "1e-06 to 100 m"]),
+    ("chord in millimetres", f"{SHAPE}.chord.values[1]", 1500.0, ["1500.0", "1e-06 to 100 m"]),
     ("chord as text", f"{SHAPE}.chord.values[2]", "wide", ["'wide'", "must be a number"]),
     ("quoted number", f"{SHAPE}.chord.values[2]", "1.5", ["'1.5'", "must be a number"]),
     ("boolean", f"{SHAPE}.chord.values[2]", True, ["True", "must be a number"]),
@@ -476,8 +476,8 @@ BAD_VALUES: list[tuple[str, str, Any, list[str]]] = [
     ("nested list", f"{SHAPE}.chord.values[2]", [1.0, 2.0], ["a list of 2", "must be a number"]),
     ("mapping entry", f"{SHAPE}.chord.values[2]", {"a": 1}, ["a mapping of 1", "a number"]),
     ("not a number", f"{SHAPE}.chord.values[2]", math.nan, ["nan", "must be a number"]),
-    ("infinite", f"{SHAPE}.chord.values[2]", math.inf, ["inf", "above 0 to 100 m"]),
-    ("huge integer", f"{SHAPE}.chord.values[2]", 10**390, ["1000", "above 0 to 100 m"]),
+    ("infinite", f"{SHAPE}.chord.values[2]", math.inf, ["inf", "1e-06 to 100 m"]),
+    ("huge integer", f"{SHAPE}.chord.values[2]", 10**390, ["1000", "1e-06 to 100 m"]),
     ("text for a list", f"{SHAPE}.chord.values", "1, 2", ["'1, 2'", "must be a list"]),
     ("number for a list", f"{SHAPE}.chord.grid", 0.5, ["0.5", "must be a list"]),
     ("empty list", f"{SHAPE}.chord.grid", [], ["0 entries", "1 to 100000"]),

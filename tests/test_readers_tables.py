@@ -418,3 +418,31 @@ def test_tables_without_a_span_or_with_few_cells_are_refused(tmp_path):
     text = "eta,z_m,chord_m,twist_deg,airfoil\n0,0,1,2,circle\n0.5,,1,1,\n0.9,5,1,1,naca\n"
     said = findings(bg.read(table(tmp_path, text)))
     assert "chord: runs from 0 to 0.9; beyond it the end value is held" in said
+
+
+@pytest.mark.parametrize(
+    ("member", "old", "new"),
+    [
+        ("xl/worksheets/sheet1.xml", b"<row r=", b'<row r="a" x='),
+        ("xl/worksheets/sheet1.xml", b"</row>", b"</rows>"),
+        ("xl/workbook.xml", b"</sheets>", b""),
+    ],
+)
+def test_workbooks_whose_sheets_are_no_xml_are_refused(tmp_path, member, old, new):
+    path = sheets(tmp_path / "b.xlsx", {"Geometry": numad(), "Components": []})
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    assert old in members[member]
+    members[member] = members[member].replace(old, new)
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    assert problems(path)
+
+
+def test_a_workbook_with_a_broken_directory_is_refused(tmp_path):
+    path = sheets(tmp_path / "b.xlsx", {"Geometry": numad(), "Components": []})
+    content = bytearray(path.read_bytes())
+    content[-6:-2] = (2**32 - 9).to_bytes(4, "little")  # where the directory begins
+    path.write_bytes(content)
+    assert problems(path)

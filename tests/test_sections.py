@@ -87,3 +87,14 @@ def test_splines_pass_through_their_landmarks():
     dense = np.broadcast_to(middle, (2, 400))
     assert_allclose(curves.at(dense)[0], SPLINES.values(middle) @ shapes, atol=1e-12)
     assert_allclose(curves.at(dense)[1], SPLINES.values(middle, 1) @ shapes, atol=1e-9)
+
+
+@pytest.mark.parametrize("n", [5, 7, 9, 11])
+def test_few_landmarks_have_measures_too(n):
+    splines = SectionSplines(landmark_parameters(n))
+    points = np.stack([landmarks(ellipse(t), n) for t in (0.2, 0.4)])
+    wanted = np.array([0.25, 0.35])
+    A, c = splines.normalising(points, wanted)
+    curves = splines.fit(points @ A + c[:, None])
+    assert_allclose(curves.chord, 1.0, atol=1e-9)
+    assert_allclose(curves.relative_thickness, wanted, rtol=1e-6)

@@ -23,6 +23,7 @@ from bladegen.preview.drawing import (
 from bladegen.preview.renderer import image_of, quietly, require_renderer
 from bladegen.preview.scene import Field, Scene, scene_of
 from bladegen.style import INK
+from bladegen.vtk_files import save
 
 __all__ = ["gallery", "picture", "save_image", "write_vtp"]
 
@@ -110,7 +111,7 @@ def gallery(
 
 def write_vtp(mesh: TriangleMesh, path: Path, *, scale: float = 1.0) -> None:
     """Write a mesh as VTK poly data, its lengths times `scale`."""
-    poly(mesh, scale).save(str(path))
+    save(poly(mesh, scale), path)
 
 
 def _figure(blade: Blade, scene: Scene, field: Field | None, size: tuple[int, int]) -> Any:

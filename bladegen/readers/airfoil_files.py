@@ -19,6 +19,8 @@ __all__ = ["SUFFIXES", "read_airfoil", "read_folder"]
 SUFFIXES = (".dat", ".txt", ".csv", ".cor", ".pts")
 MAX_BYTES = 1_000_000
 FEWEST = 10  # points below which a file is no airfoil
+LENGTHS = 1e-2, 1e4  # of the chord: in chords, metres, per cent or millimetres
+HIGHEST = 2.0  # chords from the lowest to the highest point; a circle has 1
 
 
 def read_airfoil(path: Path) -> Array:
@@ -100,11 +102,17 @@ def _problem(points: Array) -> str | None:
         return f"has {len(points)} points, allowed are {FEWEST} to {MAX_AIRFOIL_POINTS}"
     if not np.isfinite(points).all():
         return "has a coordinate that is not finite"
-    x = points[:, 0]
-    length = float(np.ptp(x))
-    if length <= 0 or min(x[0], x[-1]) < x.min() + 0.9 * length:
-        return "does not run from trailing edge to trailing edge"
-    crossing = first_crossing(points / length)
+    low, high = points.min(axis=0), points.max(axis=0)
+    length, height = (high - low).tolist()
+    if not LENGTHS[0] <= length <= LENGTHS[1]:
+        return f"x spans {length:g}, allowed is {LENGTHS[0]:g} to {LENGTHS[1]:g}"
+    crossing = None
+    if height > HIGHEST * length:
+        fault = f"y spans {height:g}, allowed is up to {HIGHEST:g} times the chord of {length:g}"
+    elif min(points[[0, -1], 0]) < low[0] + 0.9 * length:
+        fault = "does not run from trailing edge to trailing edge"
+    else:
+        crossing, fault = first_crossing(points / length), None
     if crossing is not None:
         return f"crosses itself between points {crossing[0]} and {crossing[1]}"
-    return None
+    return fault

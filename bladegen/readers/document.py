@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.arrays import Array, ArrayLike, Mask
-from bladegen.definition import Distribution
+from bladegen.definition import SMALLEST_RISE, SMALLEST_STEP, Distribution
 from bladegen.errors import Finding
 
 __all__ = ["FRACTION", "Node", "Notes", "Range"]
@@ -158,9 +158,9 @@ class Node:
             self.problem(f"grid has {len(grid)} entries and values {len(values)}, must be alike")
             return None
         repeated = np.flatnonzero((np.diff(grid) == 0) & (np.diff(values) == 0)) + 1
-        ordered = self["grid"]._increase(grid, repeated)
+        ordered = self["grid"]._increase(grid, repeated, SMALLEST_STEP)
         if rising:
-            ordered &= self["values"]._increase(values, repeated)
+            ordered &= self["values"]._increase(values, repeated, SMALLEST_RISE)
         if len(grid) - len(repeated) < 2:
             self["grid"].problem("has 1 entry, at least 2 that differ are needed")
             return None
@@ -189,9 +189,9 @@ class Node:
             self.finding("leaves 0 to 1 by rounding; cut")
         return cut
 
-    def _increase(self, values: Array, repeated: ArrayLike) -> bool:
+    def _increase(self, values: Array, repeated: ArrayLike, least: float) -> bool:
         """Tell whether values increase but for `repeated` entries; say which do not."""
-        steps = np.setdiff1d(np.flatnonzero(~(np.diff(values) > 0)) + 1, repeated)
+        steps = np.setdiff1d(np.flatnonzero(~(np.diff(values) >= least)) + 1, repeated)
         self.each(steps, lambda i: f"got {values[i]:g} after {values[i - 1]:g}, must increase")
         return not steps.size
 

@@ -10,6 +10,7 @@ from functools import reduce
 from pathlib import Path
 
 from bladegen.definition import (
+    SMALLEST_STEP,
     Airfoil,
     BladeDefinition,
     Distribution,
@@ -24,7 +25,7 @@ from bladegen.readers.document import Node, Range
 
 __all__ = ["Entry", "Layout", "read", "recognises"]
 
-CHORD = Range(0.0, 100.0, "m", above=True)
+CHORD = Range(1e-6, 100.0, "m")  # a tip may run out to a point, all but
 POSITION = Range(-1000.0, 1000.0, "m")
 FRACTION_OF_CHORD = Range(-1.0, 2.0, "of the chord")
 RELATIVE_THICKNESS = Range(0.0, 1.05, "of the chord", above=True)
@@ -172,7 +173,7 @@ def _stations(
         if last and eta == last.eta and station.airfoil is last.airfoil:
             entry.node.finding(f"{entry.name} stands twice at {eta:g}; taken once")
             continue
-        if last and eta <= last.eta:
+        if last and eta - last.eta < SMALLEST_STEP:
             entry.node.problem(f"{entry.name} at {eta:g} follows {last.eta:g}, must increase")
         stations.append(station)
     if missing:

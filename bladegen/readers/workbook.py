@@ -4,10 +4,11 @@ A workbook is a zip of XML files: what it unpacks to is bounded before anything 
 XML that declares entities is refused.  openpyxl is imported when first needed.
 """
 
+import struct
 import zipfile
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,18 @@ MAX_MEMBERS = 2000
 MAX_ROWS = 20_000
 MAX_COLUMNS = 100
 _DECLARATIONS = (b"<!DOCTYPE", b"<!ENTITY")
+
+_DAMAGED = (  # what zipfile and zlib raise at bytes that are no archive
+    ValueError,
+    LookupError,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    OverflowError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 Sheets = dict[str, Rows]
 
@@ -60,14 +73,11 @@ def _opened(path: Path) -> Iterator[Any]:
     from openpyxl import load_workbook
 
     try:
-        book = load_workbook(path, read_only=True, data_only=True, keep_links=False)
-    except Exception as error:  # openpyxl lets through whatever its parsers raise
+        with closing(load_workbook(path, read_only=True, data_only=True, keep_links=False)) as book:
+            yield book
+    except Exception as error:  # openpyxl parses late and lets through whatever its parsers raise
         said = " ".join(str(error).split())[:120] or type(error).__name__
         raise FileError(str(path), [f"is no workbook that can be read: {said}"]) from None
-    try:
-        yield book
-    finally:
-        book.close()
 
 
 def _require_harmless(path: Path) -> None:
@@ -95,7 +105,7 @@ def _require_harmless(path: Path) -> None:
                     )
     except OSError as error:
         raise FileError(str(path), [f"cannot be read: {error.strerror}"]) from None
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, zlib.error, EOFError) as error:
+    except _DAMAGED as error:
         raise FileError(str(path), [f"is no workbook: {error}"]) from None
 
 

@@ -6,6 +6,7 @@ a quantity has no point.  A workbook has one full table.  Conventions and layout
 """
 
 import csv
+import errno
 import io
 from math import degrees
 from pathlib import Path
@@ -95,6 +96,7 @@ def _comments(definition: BladeDefinition, folder: str) -> list[str]:
 
 
 def _workbook(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
+    from lxml.etree import LxmlError
     from openpyxl import Workbook
 
     eta, loss = common_grid(definition)
@@ -121,7 +123,10 @@ def _workbook(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
         sheet.append(row)
     _airfoil_sheets(book, names)
     with replacing(path) as temporary:
-        book.save(temporary)
+        try:
+            book.save(temporary)
+        except LxmlError as error:  # openpyxl writes sheets to temporary files through lxml
+            raise OSError(errno.EIO, f"a temporary file cannot be written ({error})") from None
     found = [
         Finding(
             GEOMETRY,

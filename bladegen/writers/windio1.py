@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from bladegen.arrays import Array
-from bladegen.definition import Airfoil, BladeDefinition, Distribution
+from bladegen.definition import Airfoil, BladeDefinition, Distribution, united
 from bladegen.redefinition import sampled
 from bladegen.writers import windio
 from bladegen.writers.windio import Document, Note
@@ -77,7 +77,7 @@ def _pitch_axis(definition: BladeDefinition, note: Note) -> Distribution:
     if definition.pitch_axis is not None:
         return definition.pitch_axis
     assert definition.section_offset_y is not None  # a definition has one of both
-    grid = np.union1d(definition.section_offset_y.grid, definition.chord.grid)
+    grid = united(definition.section_offset_y.grid, definition.chord.grid)
     note(
         "pitch_axis",
         f"section_offset_y over chord, sampled to within {FRACTION:g} chord of the quotient",

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from bladegen.blade import Blade
-from bladegen.definition import Airfoil, BladeDefinition, Distribution, Rotor, Station
+from bladegen.definition import Airfoil, BladeDefinition, Distribution, Rotor, Station, united
 from bladegen.redefinition import sampled
 from bladegen.writers import windio
 from bladegen.writers.windio import Document, Note
@@ -92,7 +92,7 @@ def _offset(definition: BladeDefinition, note: Note) -> Distribution:
     if definition.section_offset_y is not None:
         return definition.section_offset_y
     assert definition.pitch_axis is not None  # a definition has one of both
-    grid = np.union1d(definition.pitch_axis.grid, definition.chord.grid)
+    grid = united(definition.pitch_axis.grid, definition.chord.grid)
     note(
         "section_offset_y",
         f"pitch axis times chord, sampled to within {1e3 * OFFSET:g} mm of the product",
@@ -103,7 +103,7 @@ def _offset(definition: BladeDefinition, note: Note) -> Distribution:
 def _measured(definition: BladeDefinition, note: Note) -> Distribution:
     note("rthick", "windIO 2 must have one; measured on the sections between the airfoils")
     made = Blade.from_definition(definition)
-    eta = np.union1d([0.0, 1.0], made.eta)
+    eta = united([0.0, 1.0], made.eta)
     return sampled(made.relative_thickness, eta, RATIO)
 
 

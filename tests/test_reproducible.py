@@ -1,0 +1,106 @@
+"""The same request makes the same bytes: in other processes, with other threads and hash seeds."""
+
+import hashlib
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+FORMATS = ("stl", "glb", "ply", "obj", "3mf", "vtp", "brep", "iges", "step")
+RUN = """
+import sys, time
+from bladegen.cli import app
+folder, formats = sys.argv[1], sys.argv[2].split(",")
+asked = [word for suffix in formats for word in ("--format", suffix)]
+small = ["--landmarks", "101", "--stations", "40", "--tolerance", "5mm"]
+for command in (
+    ["perturb", "nrel5mw", "--thickness", "1.1", "-o", folder + "/blade", *asked, *small],
+    ["family", "dtu10mw", "-o", folder + "/family", "--count", "70", "--seed", "3",
+     "--spans", "12", "--jobs", sys.argv[3]],
+    ["family", "nrel5mw", "-o", folder + "/files", "--count", "2", "--seed", "3",
+     "--spans", "20", "--format", "step", "--format", "stl"],
+    ["space", "build", "-o", folder + "/space.npz", "--count", "40", "--landmarks", "101"],
+):
+    app(command, standalone_mode=False)
+"""
+LAST = ".report.json"  # holds times by design
+
+
+def made(folder: Path, *, threads: int, seed: str, epoch: str | None, jobs: int = 1) -> Any:
+    """Run the commands in a process of its own."""
+    environment = {k: v for k, v in os.environ.items() if k != "SOURCE_DATE_EPOCH"}
+    environment |= {"PYTHONHASHSEED": seed, "COLUMNS": "80"}
+    environment |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), str(threads))
+    if epoch is not None:
+        environment["SOURCE_DATE_EPOCH"] = epoch
+    return subprocess.Popen(
+        [sys.executable, "-c", RUN, str(folder), ",".join(FORMATS), str(jobs)],
+        env=environment,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory) -> list[dict[str, bytes]]:
+    """Files of three runs by name: two with a fixed time, the last at its own time."""
+    folders = [tmp_path_factory.mktemp(name) for name in ("one", "two", "three")]
+    asked = (
+        {"threads": 1, "seed": "1", "epoch": "1700000000"},
+        {"threads": 2, "seed": "2", "epoch": "1700000000", "jobs": 2},
+        {"threads": 2, "seed": "random", "epoch": None},
+    )
+    processes = [made(f, **how) for f, how in zip(folders, asked, strict=True)]
+    for process in processes:
+        _, err = process.communicate(timeout=300)
+        assert process.returncode == 0, err
+    return [
+        {
+            str(path.relative_to(folder)): path.read_bytes()
+            for path in sorted(folder.rglob("*"))
+            if path.is_file() and path.name != ".lock"
+        }
+        for folder in folders
+    ]
+
+
+def differing(one: dict[str, bytes], two: dict[str, bytes]) -> list[str]:
+    assert one.keys() == two.keys()
+    return [name for name in one if one[name] != two[name]]
+
+
+def test_meshes_solids_and_manifests_are_the_same(runs):
+    changing = [name for name in differing(runs[0], runs[1]) if not name.endswith(LAST)]
+    assert changing == []
+    assert {Path(name).suffix for name in runs[0]} >= {f".{suffix}" for suffix in FORMATS}
+    assert "family/manifest.parquet" in runs[0]
+
+
+def test_without_a_fixed_time_only_time_stamps_differ(runs):
+    changing = [name for name in differing(runs[0], runs[2]) if not name.endswith(LAST)]
+    assert changing == ["blade/nrel5mw-perturbed.iges", "blade/nrel5mw-perturbed.step"]
+    stamp = re.compile(rb"20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d|\d+H(20)?\d{6}\.\d{6}")
+    for name in changing:
+        assert stamp.sub(b"", runs[0][name]) == stamp.sub(b"", runs[2][name])
+        assert len(stamp.findall(runs[0][name])) >= 1
+
+
+def test_reports_differ_in_seconds_alone(runs):
+    (name,) = [name for name in runs[0] if name.endswith(LAST)]
+    one, two = (json.loads(run[name]) for run in runs[:2])
+    assert one.pop("seconds").keys() == two.pop("seconds").keys()
+    assert one == two
+
+
+def test_the_report_names_the_files_as_they_are(runs):
+    (name,) = [name for name in runs[0] if name.endswith(LAST)]
+    for entry in json.loads(runs[0][name])["files"]:
+        content = runs[0][f"blade/{entry['name']}"]
+        assert entry["bytes"] == len(content)
+        assert entry["sha256"] == hashlib.sha256(content).hexdigest()

@@ -1,0 +1,136 @@
+"""A process that has imported what is slow, and runs bladegen's commands in forks of itself.
+
+Real commands in real processes, without the seconds that importing OCCT and VTK takes each time.
+It reads one request a line from stdin, a JSON list of jobs that run at once, and answers a list:
+
+    {"args": [...]}   what follows `bladegen` on the command line, and of these what is wanted:
+    "hidden": [...]   libraries that cannot be imported
+    "limit": bytes    no file may grow beyond it, as on a full disk
+    "plain": true     without root's right to write where the mode forbids it
+    "kill": seconds   kill -9 after so long
+
+    [{"status": exit code or -9, "err": what it wrote to stderr, "seconds": ...}, ...]
+"""
+
+import ctypes
+import importlib
+import json
+import os
+import resource
+import signal
+import sys
+import time
+from typing import Any
+
+SLOW = (
+    "OCP.STEPControl",
+    "cadquery",
+    "trimesh",
+    "pyvista",
+    "matplotlib.pyplot",
+    "scipy.interpolate",
+)
+OVERRIDES = 1 << 1 | 1 << 2  # CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH
+CAPABILITY_VERSION = 0x20080522
+
+
+def without_overrides() -> None:
+    """Take the right to pass over file modes from this process, as if it were not root's."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    header = (ctypes.c_uint32 * 2)(CAPABILITY_VERSION, 0)
+    sets = (ctypes.c_uint32 * 6)()  # effective, permitted, inheritable, twice 32 bits
+    if libc.capget(header, sets):
+        raise OSError(ctypes.get_errno(), "capget")
+    sets[0] &= ~OVERRIDES
+    sets[1] &= ~OVERRIDES
+    if libc.capset(header, sets):
+        raise OSError(ctypes.get_errno(), "capset")
+
+
+def hide(library: str) -> None:
+    """Make a library one that is not installed."""
+    for name in [n for n in sys.modules if n.partition(".")[0] == library]:
+        del sys.modules[name]
+    sys.modules[library] = None  # type: ignore[assignment]
+
+
+def run(job: dict[str, Any], error: int) -> None:
+    """Be the command: never returns."""
+    os.setsid()
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    os.dup2(error, 2)
+    sys.argv = ["bladegen", *job["args"]]
+    for library in job.get("hidden", ()):
+        hide(library)
+    if "limit" in job:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (job["limit"], job["limit"]))
+    if job.get("plain"):
+        without_overrides()
+    from bladegen.cli import main
+
+    status = 70
+    try:
+        main()
+        status = 0
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else 0 if end.code is None else 1
+    except BaseException:
+        import traceback
+
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+
+def answered(jobs: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Run jobs at once and say how each ended."""
+    running = []
+    for job in jobs:
+        stream = os.fdopen(os.memfd_create("stderr"), "w+b")
+        start, process = time.monotonic(), os.fork()
+        if process == 0:
+            run(job, stream.fileno())
+        running.append((job, process, start, stream))
+    answers = []
+    for job, process, start, stream in running:
+        if "kill" in job:
+            time.sleep(max(0.0, start + job["kill"] - time.monotonic()))
+            os.killpg(process, signal.SIGKILL) if _leads(process) else os.kill(process, 9)
+        _, status = os.waitpid(process, 0)
+        stream.seek(0)
+        answers.append(
+            {
+                "status": os.waitstatus_to_exitcode(status),
+                "err": stream.read().decode(),
+                "seconds": time.monotonic() - start,
+            }
+        )
+        stream.close()
+    return answers
+
+
+def _leads(process: int) -> bool:
+    try:
+        return os.getpgid(process) == process
+    except ProcessLookupError:
+        return False
+
+
+def serve() -> None:
+    """Import what is slow, then answer requests until stdin ends."""
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    for name in SLOW:
+        importlib.import_module(name)
+    importlib.import_module("bladegen.cli")
+    answers.write("ready\n")
+    answers.flush()
+    for line in sys.stdin:
+        answers.write(json.dumps(answered(json.loads(line))) + "\n")
+        answers.flush()
+
+
+if __name__ == "__main__":
+    serve()

@@ -43,6 +43,7 @@ STAMPS = """() => {
         window.drawnAt = 0;
     }, true);
 }"""
+DRAWN = '.stage[data-drawn]:not([data-drawn="0"])'
 KEYS = {
     "Shape 1": "ArrowRight",
     "Thickness": "ArrowRight",
@@ -68,7 +69,7 @@ def newcomer(browser, address, blade):
     start = time.perf_counter()
     tab = browser.new_page(viewport={"width": 1280, "height": 720})
     tab.goto(address)
-    tab.wait_for_selector(".stage[data-drawn]", timeout=120_000)
+    tab.wait_for_selector(DRAWN, timeout=120_000)
     seen = time.perf_counter() - start
     draws = 0
     while True:
@@ -107,7 +108,7 @@ def shots(browser, address, blade, folder):
         )
         tab = context.new_page()
         tab.goto(address + query)
-        tab.wait_for_selector(".stage[data-drawn]", timeout=120_000)
+        tab.wait_for_selector(DRAWN, timeout=120_000)
         tab.evaluate("() => document.fonts.ready")
         tab.wait_for_selector(".stage[data-fine=true]")
         tab.screenshot(path=folder / f"{name}.png")
@@ -152,7 +153,7 @@ def main():
         newcomer(browser, served[0].address, asked.blade)
         tab = browser.new_page(viewport={"width": 1280, "height": 720})
         tab.goto(served[0].address)
-        tab.wait_for_selector(".stage[data-drawn]", timeout=120_000)
+        tab.wait_for_selector(DRAWN, timeout=120_000)
         tab.evaluate(STAMPS)
         for name, key in KEYS.items():
             times = latencies(tab, name, key, asked.moves)

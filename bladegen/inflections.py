@@ -130,7 +130,7 @@ def _quantities(blade: Blade, grid: Array, at: Indices) -> list[tuple[str, Array
         ("trailing edge's width", width, pchip(knots, width[at])(q)),
     ]
     for side, heights in (("suction", upper), ("pressure", lower)):
-        shares = heights / thickness[:, None]
+        shares = heights / np.where(thickness > 0, thickness, 1.0)[:, None]  # 0 where sides cross
         expected = pchip(knots, shares[at])(q) * own[:, None]
         found += [
             (f"{side} side at {100 * x:.0f} % chord", heights[:, i], expected[:, i])

@@ -212,7 +212,7 @@ class Page:
                 shown = await run.io_bound(self.made, state)
                 if shown is None:  # the studio ends
                     return
-                self._show(shown, refit=state.blade != blade)
+                await self._show(shown, refit=state.blade != blade)
                 blade = state.blade
         except BladegenError as error:
             self.say(str(error), bad=True)
@@ -233,15 +233,17 @@ class Page:
             charts.planform(scene, plain),
         )
 
-    def _show(self, shown: Shown, *, refit: bool) -> None:
+    async def _show(self, shown: Shown, *, refit: bool) -> None:
         self.scene = shown.scene
         self.studio.packets[self.name] = shown.packets
         self._count += 1
         self.studio.worker.begin()  # it needs some seconds, and somebody may export soon
-        self.charts(shown)
-        self.follow()
         place = f"/studio/{self.name}/{self._count}"
         self.stage.run_method("show", f"{place}/now", f"{place}/baseline" if refit else "")
+        if not refit:  # the browser asks for the surface while it is told the rest
+            await asyncio.sleep(0)
+        self.charts(shown)
+        self.follow()
         address = f"?{to_query(shown.scene.state)}"
         self.client.run_javascript(f"history.replaceState(null, '', {address!r})")
 

@@ -68,7 +68,7 @@ def row(path: Path, size: float, solid: cad.Solid) -> str:
     return (
         f"{size:7.0f}  {spent:7.1f}  {len(made.faces):9d}  {volumes:7d}  "
         f"{'yes' if np.all(times == 2) else 'NO':6s}  {made.area / solid.area - 1:+11.1e}  "
-        f"{made.volume / solid.net.volume() - 1:+13.1e}  {min(worst[:2]):12.2f}  "
+        f"{made.volume / solid.volume - 1:+13.1e}  {min(worst[:2]):12.2f}  "
         f"{min(worst):10.1e}"
     )
 

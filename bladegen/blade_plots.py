@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from bladegen import affine, grassmann
+from bladegen import affine, combs, grassmann
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.pga import ShapeSpace
-from bladegen.plots import dress, figure, figure_of, shade
+from bladegen.plots import dress, figure, figure_of, shade, titled
 from bladegen.spanwise import LINES, sides, spanwise
 from bladegen.style import BASELINE, CATEGORIES, INK, VARIANT
 
@@ -62,7 +62,7 @@ def planform(blade: Blade, baseline: Blade | None = None) -> Any:
         _over_span(drawn.add_subplot(cell), label, eta, values, blade, baseline)
     for axis in drawn.axes:
         dress(axis)
-    return _titled(drawn, blade, "planform")
+    return titled(drawn, blade, "planform")
 
 
 def sections(blade: Blade, baseline: Blade | None = None) -> Any:
@@ -94,7 +94,7 @@ def sections(blade: Blade, baseline: Blade | None = None) -> Any:
         title_fontsize=9,
         frameon=False,
     )
-    return _titled(drawn, blade, "sections at the stations", baseline)
+    return titled(drawn, blade, "sections at the stations", baseline)
 
 
 def path(blade: Blade, baseline: Blade | None = None) -> Any:
@@ -135,7 +135,7 @@ def path(blade: Blade, baseline: Blade | None = None) -> Any:
             axis.text(0.5, 0.5, note, ha="center", transform=axis.transAxes, color=INK)
     if baseline is not None:
         away.legend(fontsize=8, frameon=False)
-    return _titled(drawn, blade, "path on the Grassmannian")
+    return titled(drawn, blade, "path on the Grassmannian")
 
 
 def curvature(blade: Blade, baseline: Blade | None = None) -> Any:
@@ -165,7 +165,7 @@ def curvature(blade: Blade, baseline: Blade | None = None) -> Any:
     axes[-1, 0].set_xlabel("x / chord")
     axes[0, 0].legend(fontsize=8, frameon=False, loc="lower left", ncols=2)
     what = "curvature times chord of sections, convex positive"
-    return _titled(drawn, blade, what, baseline)
+    return titled(drawn, blade, what, baseline)
 
 
 def thickness(blade: Blade, baseline: Blade | None = None) -> Any:
@@ -200,7 +200,7 @@ def thickness(blade: Blade, baseline: Blade | None = None) -> Any:
     axes[1, 0].set(xlabel="x / chord", ylabel="thickness, % chord", title="between the sides")
     axes[1, 1].set(xlabel="x / chord", ylabel="camber, % chord", title="middle of the sides")
     axes[1, 0].legend(fontsize=8, title="eta", title_fontsize=9, frameon=False)
-    return _titled(drawn, blade, "thickness and camber", baseline)
+    return titled(drawn, blade, "thickness and camber", baseline)
 
 
 def overview(blade: Blade) -> Any:
@@ -225,6 +225,7 @@ PLOTS = {
     "path": Plot("distances and normal coordinates on the Grassmannian over the span", path),
     "curvature": Plot("curvature along sections", curvature),
     "thickness": Plot("thickness over the span, thickness and camber along sections", thickness),
+    "combs": Plot("curvature combs of the airfoils, as given and as faired", combs.drawing),
 }
 
 
@@ -299,13 +300,3 @@ def _section_curvature(blade: Blade, profiles: Array) -> Array:
     (dx, dy), (ddx, ddy) = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
     bend: Array = (dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3
     return bend
-
-
-def _titled(drawn: Any, blade: Blade, what: str, baseline: Blade | None = None) -> Any:
-    """Give a figure its title; say what dashes are where no legend does."""
-    name = blade.definition.description or blade.name
-    if blade.changes:
-        name += f", perturbed: {blade.name}"
-    dashes = "" if baseline is None else "; baseline dashed"
-    drawn.suptitle(f"{name}: {what}{dashes}", color=INK, fontsize=13)
-    return drawn

@@ -196,15 +196,15 @@ def _solid(products: exporters.Products, path: Path, wanted: float) -> dict[str,
     solid = products.solid
     again = checks.solid_figures(cad_files.read(path), quick=True)
     before = cad.volume(solid.shape, cad.COARSE_VOLUME) / cad.MILLIMETRES**3
-    volume = solid.net.volume()
     deviation = solid.deviation
     return {
         **{key: again[key] for key in FROM_FILE},
         "face_names": [name for name, _ in solid.faces],
         "sections": len(solid.net.v),
         "poles": int(solid.net.poles.size // 3),
-        "volume_m3": volume,
-        "volume_against_sections": volume / wanted - 1.0,
+        "volume_m3": solid.volume,
+        "tip_volume_m3": solid.tip_volume,  # of it, beyond the last section
+        "volume_against_sections": solid.net.volume() / wanted - 1.0,
         "volume_change_on_reading": again["volume_m3"] / before - 1.0,
         "deviation_mm": {
             **_deviation(deviation),

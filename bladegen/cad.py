@@ -14,9 +14,9 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.blade import Blade
-from bladegen.ends import measured, rounded
+from bladegen.ends import edge_poles, measured, rounded, tip_volume
 from bladegen.errors import CadError
-from bladegen.net import CLOSED_EDGE, DEGREE, Deviation, SurfaceNet, fitted
+from bladegen.net import BEZIER, CLOSED_EDGE, Deviation, SurfaceNet, fitted
 from bladegen.tips import Tip, flat_tip
 
 __all__ = [
@@ -49,6 +49,8 @@ class Solid:
         The surface of its two sides [m].
     deviation : Deviation
         Of all faces from the blade.
+    tip_volume : float
+        What its tip holds beyond the plane of the last section [m3].
     name : str
         The blade's name.
     """
@@ -57,12 +59,13 @@ class Solid:
     faces: tuple[tuple[str, Any], ...]
     net: SurfaceNet
     deviation: Deviation
+    tip_volume: float
     name: str
 
     @property
     def volume(self) -> float:
-        """Volume [m3], by OCCT: off by up to 1e-5 (see `volume`), while `net.volume` is exact."""
-        return volume(self.shape) / MILLIMETRES**3
+        """Volume [m3] inside all faces, its tip's included, exact but for rounding."""
+        return self.net.volume() + self.tip_volume
 
     @property
     def area(self) -> float:
@@ -126,14 +129,14 @@ def solid(
         faces.append(("trailing edge", _face(_surface(strip, _LINEAR, net.v_knots))))
     faces += [("root", _cap(scaled, 0.0, blunt)), *_tip_faces(scaled, blunt, tip)]
     shape, named = _closed(faces, blade.name)
-    return Solid(shape, named, net, deviation, blade.name)
+    return Solid(shape, named, net, deviation, tip_volume(net, tip), blade.name)
 
 
 def volume(shape: Any, accuracy: float = VOLUME_TOLERANCE) -> float:
     """Return a shape's volume [mm3], by OCCT's adaptive quadrature.
 
     Its own estimate of `accuracy` (relative) is optimistic: at 1e-6 the volume of a blade is
-    off by up to 1e-5.  `SurfaceNet.volume` is exact.
+    off by up to 1e-5.  `Solid.volume` is exact.
     """
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
@@ -161,7 +164,6 @@ def is_valid(shape: Any) -> bool:
 
 
 _LINEAR = np.array([0.0, 0.0, 1.0, 1.0])
-_BEZIER = np.repeat([0.0, 1.0], DEGREE + 1)
 
 
 def _surface(poles: Array, u_knots: Array, v_knots: Array) -> Any:
@@ -230,10 +232,9 @@ def _tip_faces(net: SurfaceNet, blunt: bool, tip: Tip) -> list[tuple[str, Any]]:
     poles = rounded(net, tip)
     if poles is None:
         return [("tip", _cap(net, 1.0, blunt))]
-    faces = [("tip", _face(_surface(poles, net.halves()[0].u_knots, _BEZIER)))]
+    faces = [("tip", _face(_surface(poles, net.halves()[0].u_knots, BEZIER)))]
     if blunt:
-        straight = np.linspace(poles[0, 0], poles[0, -1], DEGREE + 1)
-        edge = _surface(np.stack([poles[0], straight]), _LINEAR, _BEZIER)
+        edge = _surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
         faces.append(("tip trailing edge", _face(edge)))
     return faces
 

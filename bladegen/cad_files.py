@@ -80,7 +80,7 @@ def write_step(
         status = writer.WriteStream(content)
     if status.name != "IFSelect_RetDone":
         raise CadError(f"{path}: OCCT could not write the STEP file ({status.name})")
-    path.write_bytes(content.getvalue())
+    _write(path, content)
 
 
 def read_step(path: Path) -> Any:
@@ -128,7 +128,7 @@ def write_iges(solid: Solid, path: Path, *, timestamp: str | None = None) -> Non
         content = io.BytesIO()
         if not writer.Write(content):
             raise CadError(f"{path}: OCCT could not write the IGES file")
-    path.write_bytes(content.getvalue())
+    _write(path, content)
 
 
 def read_iges(path: Path) -> Any:
@@ -162,7 +162,7 @@ def write_brep(solid: Solid, path: Path) -> None:
     version = TopTools_FormatVersion.TopTools_FormatVersion_CURRENT
     content = io.BytesIO()
     BRepTools.Write_s(solid.shape, content, False, False, version)
-    path.write_bytes(content.getvalue())
+    _write(path, content)
 
 
 def read_brep(path: Path) -> Any:
@@ -258,6 +258,13 @@ def _name_product(model: Any, name: str) -> None:
         if isinstance(entity, StepBasic_Product):
             entity.SetId(TCollection_HAsciiString(name))
             entity.SetName(TCollection_HAsciiString(name))
+
+
+def _write(path: Path, content: io.BytesIO) -> None:
+    """Write what OCCT made in memory: it does not notice a full disk, Python does."""
+    if not path.parent.is_dir():
+        raise CadError(f"{path}: could not write: there is no folder {path.parent}")
+    path.write_bytes(content.getbuffer())
 
 
 def _source_date() -> str | None:

@@ -34,6 +34,7 @@ class What(StrEnum):
     path = "path"
     curvature = "curvature"
     thickness = "thickness"
+    combs = "combs"
     all = "all"
 
 
@@ -199,7 +200,9 @@ def plot(
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
 ) -> None:
-    """Draw diagrams of a blade: planform, sections, path on the Grassmannian, curvature, thickness.
+    """Draw diagrams of a blade.
+
+    Planform, sections, path on the Grassmannian, curvature, thickness, and its airfoils' combs.
 
     A perturbed blade is drawn over its baseline.
     """

@@ -13,15 +13,16 @@ import numpy as np
 from bladegen.arrays import Array, Mask
 from bladegen.blade import Blade
 from bladegen.landmarks import Contour, contour
-from bladegen.plots import figure, save_figure
+from bladegen.plots import figure, save_figure, titled
+from bladegen.style import BASELINE, INK, VARIANT
 
-__all__ = ["Comb", "comb", "draw", "figures", "roughness"]
+__all__ = ["Comb", "comb", "draw", "drawing", "figures", "roughness"]
 
 BETWEEN = 4  # teeth a span of the contour's spline
 NOSE, EDGE = 0.05, 0.98  # of chord; ahead and behind, curvature is of another size
 HEIGHT = 0.25  # of chord: the tooth at the largest curvature that is drawn
 LARGEST = 98.0  # per cent of the faired teeth are drawn to scale, longer ones are cut
-AS_GIVEN, FAIRED, INK = "#d55e00", "#0072b2", "#22303c"  # Okabe & Ito
+AS_GIVEN, FAIRED = BASELINE, VARIANT  # colours
 COLUMNS = 3
 
 
@@ -83,6 +84,14 @@ def draw(blade: Blade, path: Path) -> None:
     ExportError
         If the path has none of these suffixes.
     """
+    save_figure(drawing(blade), path)
+
+
+def drawing(blade: Blade, _baseline: Blade | None = None) -> Any:
+    """Return a figure of the combs of a blade's airfoils, as given and as faired.
+
+    A perturbation leaves a blade the airfoils of its baseline, so there is one of each.
+    """
     curves = _pairs(blade)
     rows = max(1, -(-len(curves) // COLUMNS))
     drawn, axes = figure(rows, COLUMNS, width=5.2 * COLUMNS, height=3.6 * rows + 0.4)
@@ -100,18 +109,17 @@ def draw(blade: Blade, path: Path) -> None:
         axis.plot(*faired.points.T, color=INK, linewidth=0.8)
         before, after = (roughness(curve) for curve in pair)
         axis.set_title(f"{name}: {before:.3g} to {after:.3g}", fontsize=9)
-        axis.set_aspect("equal")
+        axis.set(xlabel="x, chords", ylabel="y, chords", aspect="equal")
         axis.tick_params(labelsize=7)
-    for axis in axes.flat:
-        if not axis.has_data():
-            axis.axis("off")
-    axes.flat[0].legend(fontsize=8, loc="lower right")
-    drawn.suptitle(
-        f"{blade.name}: curvature combs of the airfoils behind {100 * NOSE:.0f} % chord, and the "
-        "total variation of curvature, as given and as faired [1/chord]",
-        fontsize=10,
+        axis.legend(fontsize=7, loc="lower right")
+    for axis in axes.flat[len(curves) :]:
+        axis.remove()
+    return titled(
+        drawn,
+        blade,
+        f"curvature combs of the airfoils behind {100 * NOSE:.0f} % chord, and the total variation "
+        "of curvature, as given to as faired [1/chord]",
     )
-    save_figure(drawn, path)
 
 
 def _pairs(blade: Blade) -> dict[str, tuple[Contour, Contour]]:

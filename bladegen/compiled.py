@@ -4,6 +4,9 @@ Numba compiles a function when it is first called and keeps the result on the di
 package's folder or the user's cache.  What it keeps it makes anew when the file of the function
 that was called has changed, but not when a constant or a function from elsewhere has: who
 changes `sizes`, or a tolerance that it shares, saves `kernels` too.
+
+Arithmetic is strict: were sums free to be taken in another order, two processes that compile for
+themselves could differ in the last digit, and families with them.
 """
 
 from collections.abc import Callable
@@ -13,12 +16,10 @@ from numba import njit
 
 __all__ = ["compiled"]
 
-REORDERED = {"contract", "reassoc"}  # sums may be taken in another order; NaN stays NaN
-
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Compile a function, to run without the interpreter's lock; keep the result if possible."""
-    options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": REORDERED}
+    options: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
     try:
         return njit(cache=True, **options)(function)
     except RuntimeError:  # neither the package's folder nor the user's can be written

@@ -1,4 +1,4 @@
-"""A solid's two ends: the surface that rounds its tip, and how far both are from the blade.
+"""A solid's two ends: the surface that rounds its tip, its volume, and how far both are off.
 
 The tip's arcs (`tips`) are made from the net's sides where a spline with their knots is
 determined, so that their surface meets the sides pole by pole.  What it is held against is made
@@ -9,10 +9,10 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.blade import Blade
-from bladegen.net import CLOSED_EDGE, DEGREE, Offsets, SurfaceNet
+from bladegen.net import BEZIER, CLOSED_EDGE, DEGREE, Offsets, SurfaceNet, cone_volume
 from bladegen.tips import Tip, arcs, on_arcs
 
-__all__ = ["measured", "rounded"]
+__all__ = ["edge_poles", "measured", "rounded", "tip_volume"]
 
 ACROSS = np.linspace(0.0, 1.0, 9)  # places across the ends at which they are measured
 
@@ -36,6 +36,24 @@ def rounded(net: SurfaceNet, tip: Tip) -> Array | None:
     poles: Array = make_interp_spline(u, across, DEGREE, t=knots).c
     poles[:, 0], poles[:, -1] = suction.poles[:, -1], pressure.poles[::-1, -1]
     return poles
+
+
+def edge_poles(poles: Array) -> Array:
+    """Return the poles (4, 4, 3) of the ruled face that closes a round tip's trailing edge.
+
+    It goes from the straight line across the last section's edge to the first arc of `rounded`.
+    """
+    return np.linspace(np.linspace(poles[0, 0], poles[0, -1], DEGREE + 1), poles[0], DEGREE + 1)
+
+
+def tip_volume(net: SurfaceNet, tip: Tip) -> float:
+    """Return the volume [m3] beyond the plane of the last section, exact but for rounding."""
+    poles = rounded(net, tip)
+    if poles is None:
+        return 0.0
+    poles = poles - poles[0, 0]  # the plane then goes through the origin, and its cone is flat
+    face = cone_volume(poles, net.halves()[0].u_knots, BEZIER)
+    return face + cone_volume(edge_poles(poles), BEZIER, BEZIER)
 
 
 def measured(net: SurfaceNet, blade: Blade, tip: Tip) -> list[Offsets]:

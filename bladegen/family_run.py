@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from bladegen import exporters, polygons
-from bladegen.arrays import Array
+from bladegen.arrays import Array, Indices
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, FamilyError, ToleranceError
 from bladegen.families import BLOCK, Block, Family
@@ -140,7 +140,7 @@ def run(
             place.make_sections(family.eta, family.blade.u, len(family), order.dtype)
             if order.suffixes:
                 folder(place.blades)
-            family.block(np.arange(0), dtype=FLOAT_TYPES[order.dtype])  # compiles, for all workers
+            _block(order, np.arange(0))  # compiles, for all workers
             if client is not None:
                 made = _on_cluster(order, left, client)
             elif jobs > 1 and len(left) > 1:
@@ -168,12 +168,20 @@ def _make(order: Order, number: int) -> int:
     family = order.family
     index = np.arange(number * order.block, min((number + 1) * order.block, len(family)))
     with threadpool_limits(1):  # the same sums in the same order, whatever the machine
-        block = family.block(index, dtype=FLOAT_TYPES[order.dtype], measured=True)
+        block = _block(order, index)
         rows = _rows(family, block)
         for suffix in order.suffixes:
             rows |= _exported(order, block, suffix)
     order.place.write_block(number, block, rows)
     return number
+
+
+def _block(order: Order, index: Indices) -> Block:
+    """Make the sections of some variants, in one thread as all that they are made from."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1):
+        return order.family.block(index, dtype=FLOAT_TYPES[order.dtype], measured=True)
 
 
 def _rows(family: Family, block: Block) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from bladegen import affine
 from bladegen.arrays import Array
+from bladegen.blade import Blade
 from bladegen.errors import ExportError
 from bladegen.pga import ShapeSpace
 from bladegen.style import CATEGORIES, FAINT, INK, SEQUENTIAL
@@ -23,6 +24,7 @@ __all__ = [
     "save_figure",
     "save_pages",
     "shade",
+    "titled",
 ]
 
 SUFFIXES = (".png", ".svg", ".pdf")
@@ -64,6 +66,16 @@ def dress(axis: Any) -> None:
     for text in (axis.title, axis.xaxis.label, axis.yaxis.label):
         text.set_color(INK)
         text.set_fontsize(10)
+
+
+def titled(drawn: Any, blade: Blade, what: str, baseline: Blade | None = None) -> Any:
+    """Give a figure of a blade its title; say what dashes are where no legend does."""
+    name = blade.definition.description or blade.name
+    if blade.changes:
+        name += f", perturbed: {blade.name}"
+    dashes = "" if baseline is None else "; baseline dashed"
+    drawn.suptitle(f"{name}: {what}{dashes}", color=INK, fontsize=13)
+    return drawn
 
 
 def save_figure(drawn: Any, path: Path) -> None:

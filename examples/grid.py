@@ -11,7 +11,7 @@ import pyvista as pv
 from PIL import Image
 
 import bladegen as bg
-from bladegen import grid, preview
+from bladegen import grid, preview, style
 from bladegen.tips import round_tip
 
 COLOURS = {
@@ -49,13 +49,13 @@ def main(target: Path) -> None:
                     pv.StructuredGrid(x, y, z),
                     color=COLOURS[block.name],
                     show_edges=True,
-                    edge_color=preview.INK,
+                    edge_color=style.INK,
                     ambient=0.35,
                 )
             plotter.camera_position = [focus + chord * np.array(away), focus, up]
             plotter.enable_parallel_projection()
             plotter.camera.parallel_scale = scale
-            plotter.add_text(title, position=(16, 12), font_size=14, color=preview.INK)
+            plotter.add_text(title, position=(16, 12), font_size=14, color=style.INK)
         image = Image.fromarray(plotter.screenshot(None, return_img=True))
         plotter.close()
     image.quantize(128).save(target, optimize=True)

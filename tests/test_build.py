@@ -3,10 +3,12 @@ import json
 import pytest
 
 import bladegen as bg
+from bladegen import cad, cad_files
 from bladegen.build import build, report_path
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.exporters import Options
 from bladegen.tables import report_rows
+from bladegen.tips import round_tip
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +51,7 @@ def test_the_report_meets_the_design(folder):
     assert {one["airfoil"] for one in report["airfoils"]} >= {"Cylinder1", "DU21_A17"}
     assert abs(solid["volume_against_sections"]) < 1e-5
     assert abs(solid["volume_change_on_reading"]) < 1e-6
+    assert solid["tip_volume_m3"] == 0.0
     for mesh in report["meshes"].values():
         assert mesh["watertight"]
         assert mesh["outward"]
@@ -59,6 +62,17 @@ def test_the_report_meets_the_design(folder):
     assert set(report["seconds"]) >= {"step", "stl", "glb", "png"}
     sizes = {entry["name"]: entry["bytes"] for entry in report["files"]}
     assert sizes == {name: (folder / name).stat().st_size for name in sizes}
+
+
+def test_the_volume_in_the_report_is_that_of_the_solid_with_its_tip(tmp_path):
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=201)
+    options = Options(tip=round_tip, tolerance=1e-3)
+    report = build(blade, tmp_path, formats=["step"], options=options)
+    solid = report["solid"]
+    assert abs(solid["volume_against_sections"]) < 1e-5  # up to the last section
+    by_occt = cad.volume(cad_files.read(tmp_path / "nrel5mw.step")) / 1e9
+    assert solid["tip_volume_m3"] > 5e-5 * solid["volume_m3"]
+    assert abs(by_occt / solid["volume_m3"] - 1) < 5e-6
 
 
 def test_grids_are_measured_in_the_report(tmp_path):

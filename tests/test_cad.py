@@ -85,7 +85,8 @@ def test_occt_finds_points_of_the_blade_on_the_file_s_surface(blade, step):
 def test_volumes_agree(blade, solid):
     by_sections = properties.volume(blade)
     assert_allclose(solid.net.volume(), by_sections, rtol=3e-6)
-    assert_allclose(solid.volume, by_sections, rtol=1e-5)
+    assert solid.volume == solid.net.volume()
+    assert_allclose(cad.volume(solid.shape) / 1e9, by_sections, rtol=1e-5)
     assert_allclose(solid.area, cad.area(solid.shape) / 1e6, rtol=1e-12)
 
 
@@ -107,6 +108,8 @@ def test_a_round_tip_leaves_one_valid_solid_and_adds_volume(blade, solid):
     assert figures["closed"]
     assert figures["area_m2"] > flat["area_m2"]
     assert figures["bounds_m"][1][2] > flat["bounds_m"][1][2]
+    assert rounded.tip_volume > 0 == solid.tip_volume
+    assert_allclose(rounded.volume, cad.volume(rounded.shape) / 1e9, rtol=5e-6)
 
 
 def test_a_sharp_edge_is_sewn_without_a_strip(blade):

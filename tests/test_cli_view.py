@@ -6,6 +6,7 @@ from typer.testing import CliRunner
 import bladegen as bg
 from bladegen import cli, keys, preview
 from bladegen.cli_perturb import Changes
+from bladegen.cli_view import What
 from bladegen.errors import BladegenError
 from bladegen.preview import sweep
 
@@ -69,7 +70,7 @@ def test_preview_writes_sweeps(small, tmp_path):
         (["preview", "nrel5mw", "--gif", "a.gif", "--sweep", "t1"], "sweep: got 't1', must be"),
         (["preview", "nrel5mw", "--compare", "a", "b"], "compare: takes two"),
         (["preview", "nrel5mw", "--screenshot", "a.png", "--colour", "distance"], "a baseline"),
-        (["plot", "nrel5mw", "-o", "a.png"], "for 5 diagrams, must be a folder or a .pdf"),
+        (["plot", "nrel5mw", "-o", "a.png"], "for 6 diagrams, must be a folder or a .pdf"),
         (["plot", "nrel5mw", "-o", "a.bmp"], "suffix '.bmp', allowed are .png, .svg, .pdf"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
@@ -106,16 +107,14 @@ def test_plot_writes_a_file_a_diagram(tmp_path):
     result = run("plot", "nrel5mw", "-o", tmp_path / "out", "--format", "svg", "--landmarks", 101)
     assert result.exit_code == 0, result.output
     names = sorted(file.name for file in (tmp_path / "out").iterdir())
-    assert names == [
-        f"nrel5mw-{name}.svg" for name in ("curvature", "path", "planform", "sections", "thickness")
-    ]
+    assert names == sorted(f"nrel5mw-{what}.svg" for what in What if what != What.all)
     assert "<svg" in (tmp_path / "out" / "nrel5mw-path.svg").read_text(encoding="utf-8")
 
 
 def test_plot_writes_one_file(tmp_path):
     pdf, png = tmp_path / "all.pdf", tmp_path / "one.png"
     assert run("plot", "nrel5mw", "-o", pdf, "--twist", 1, "--landmarks", 101).exit_code == 0
-    assert pdf.read_bytes().count(b"/Type /Page ") == 5
+    assert pdf.read_bytes().count(b"/Type /Page ") == len(What) - 1
     result = run("plot", "nrel5mw", "-o", png, "--what", "planform", "--landmarks", 101)
     assert result.output == f"wrote {png}\n"
     assert Image.open(png).size[0] > 1000

@@ -9,6 +9,7 @@ from bladegen import combs
 from bladegen.cli_options import Making
 from bladegen.errors import BladegenError, ExportError
 from bladegen.landmarks import contour
+from bladegen.style import BASELINE, VARIANT
 from strategies import ellipse
 
 
@@ -36,6 +37,23 @@ def test_a_picture_and_figures_of_every_airfoil(tmp_path):
     assert (tmp_path / "combs.png").read_bytes()[:4] == b"\x89PNG"
     with pytest.raises(ExportError, match="suffix"):
         combs.draw(blade, tmp_path / "combs.txt")
+
+
+def test_the_figure_shows_the_contours_with_teeth_on_them():
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=51)
+    drawn = combs.drawing(blade)
+    assert len(drawn.axes) == len(combs.figures(blade))
+    for axis, curve in zip(drawn.axes, combs._pairs(blade).values(), strict=True):
+        given, faired, line = axis.lines
+        assert (given.get_color(), faired.get_color()) == (BASELINE, VARIANT)
+        teeth = combs.comb(curve[1])
+        assert_allclose(np.stack(line.get_data(), axis=-1), teeth.points)
+        tips = np.stack(faired.get_data(), axis=-1)
+        shown = np.isfinite(tips[:, 0])
+        assert 0.5 < shown.mean() < 1.0
+        across = (tips - teeth.points)[shown]
+        (dx, dy), (nx, ny) = across.T, teeth.normal[shown].T
+        assert_allclose(dx * ny - dy * nx, 0.0, atol=1e-12)
 
 
 def test_an_unfaired_blade_is_as_rough_as_given():

@@ -9,8 +9,9 @@ from numpy.testing import assert_allclose
 from bladegen import cad, ends, net
 from bladegen.blade import Blade
 from bladegen.edges import Sharp
+from bladegen.landmarks import landmark_parameters
 from bladegen.readers import bundled, read
-from bladegen.tips import flat_tip, round_tip
+from bladegen.tips import flat_tip, on_arcs, round_tip
 
 BLADE = Blade.from_definition(read("dtu10mw"), landmarks=101)
 NET, DEVIATION = net.fitted(BLADE, 1e-3)
@@ -72,3 +73,57 @@ def test_a_sharp_edge_has_no_strip():
     fitted, deviation = net.fitted(sharp, 1e-3, sections=40)
     assert "trailing edge" not in deviation.faces
     assert fitted.v[0] == 0.0
+
+
+def drop(lean, edge):
+    """A cylinder whose section is a drop that cubic splines hold exactly, leaning along its chord.
+
+    With s = 2 u - 1: x = s^2, y = s - (1 - edge) s^3, half a thickness of `edge` where x = 1.
+    """
+    u, v = landmark_parameters(41), np.linspace(0.0, 1.0, 5)
+    s = 2.0 * u - 1.0
+    flat = np.stack([s**2, s - (1.0 - edge) * s**3, 0.0 * s], axis=-1)
+    return net.fit(flat + 2.0 * v[:, None, None] * np.array([lean, 0.0, 1.0]), u, v)
+
+
+def twisted(*sides):
+    """A tip whose sides lean fore and aft, so that no edge of it lies in a plane."""
+    poles = round_tip(*sides)
+    reach = np.linalg.norm(poles[:, 0] - poles[:, -1], axis=-1)[:, None]
+    poles[:, 1] += reach * [0.2, 0.1, 0.3]
+    poles[:, 2] -= reach * [0.1, -0.1, 0.1]
+    return poles
+
+
+@pytest.mark.parametrize("edge", [0.0, 0.2])
+@pytest.mark.parametrize("lean", [0.0, 0.5])
+def test_a_round_tip_has_the_volume_of_its_arcs(lean, edge):
+    # A cubic arc of 180 degrees over 2 h encloses 8/5 h^2; here h = s - c s^3 and dx = 2 s ds.
+    c = 1.0 - edge
+    wanted = 3.2 * (1 / 4 - c / 3 + c**2 / 8) / np.hypot(1.0, lean)
+    found = ends.tip_volume(drop(lean, edge), round_tip)
+    assert_allclose(found, wanted, rtol=1e-12)
+    assert ends.tip_volume(drop(lean, edge), flat_tip) == 0.0
+
+
+def enclosed(*grids):
+    """The volume that two triangles a cell of grids (m, n, 3) enclose."""
+    cells = [(grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]) for grid in grids]
+    return sum(np.sum(a * (np.cross(b, c) + np.cross(c, d))) / 6.0 for a, b, c, d in cells)
+
+
+def test_a_twisted_tip_has_the_volume_of_its_triangles():
+    made = drop(0.3, 0.2)
+    u, w = np.linspace(0.0, 0.5, 201), np.linspace(0.0, 1.0, 201)
+    side, other = (made.evaluate(places, np.ones(1))[0] for places in (u, 1.0 - u))
+    along = np.broadcast_to([0.3, 0.0, 1.0], side.shape)
+    poles = twisted(side, other, along, along)
+    face = on_arcs(poles[:, None], np.broadcast_to(w, (len(u), len(w))))
+    base = side[:, None] + w[:, None] * (other - side)[:, None]
+    strip = base[0] + w[:, None, None] * (face[0] - base[0])
+    fine, coarse = (
+        enclosed(*(grid[::k, ::k] for grid in (face, base[::-1], strip))) for k in (1, 2)
+    )
+    found = ends.tip_volume(made, twisted)
+    assert_allclose(found, abs(fine + (fine - coarse) / 3.0), rtol=1e-7)
+    assert abs(found / ends.tip_volume(made, round_tip) - 1.0) > 0.1

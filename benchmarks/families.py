@@ -7,8 +7,8 @@ time to fill as many bytes, freshly taken from the system, by the same threads i
 The plain loop makes variants one after the other through `Blade.perturbed`.  Medians of several
 runs, in turn.  A virtual machine may take longer for memory that nobody held for a second or two:
 so as much is filled and given back before each run, whatever is measured.  On a shared machine
-the processor's seconds say more than the clock's; both are printed, and how many times the
-sections take each ("in these").
+the processor's seconds say more than the clock's, and the program's own leave out what the system
+spends on memory; all three are printed, each beside those of memory and of the loop.
 """
 
 import argparse
@@ -20,6 +20,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+from figures import figure
 from threadpoolctl import threadpool_limits
 
 import bladegen as bg
@@ -29,6 +30,7 @@ from bladegen.family_run import Order, run
 
 THREADS = 2
 RUNS = 5
+KINDS = "clock", "own work", "processor"
 
 
 def seconds(work):
@@ -78,27 +80,20 @@ def main():
         t = np.array(variant.changes[-1]["pga"][0])
         loop.append(seconds(lambda t=t: blade.perturbed(space, t).sections(family.eta)))
     one = np.median(loop, axis=0) * asked.count
-    print(f"{asked.count} variants of {asked.blade}, {len(family.eta)} x {shape[1]} landmarks,")
-    print(f"reach {asked.reach:g}, {size / 1e6:.0f} MB, {THREADS} threads, medians of {RUNS}:")
-    print("                               s   in these   CPU s   in these   own work")
-    for name, figures in (
-        ("sections, tested", first),
+    case = f"{asked.blade}, {asked.count} variants"
+    print(f"{case}: {len(family.eta)} x {shape[1]} landmarks, reach {asked.reach:g},")
+    print(f"{size / 1e6:.0f} MB, {THREADS} threads, medians of {RUNS}")
+    for beside, other in (
         ("filling memory", memory),
         ("copying memory", copied),
         ("plain loop", one),
     ):
-        clock, own, cpu = figures
-        print(
-            f"  {name:20s} {clock:9.3f} {first[0] / clock:10.2f} {cpu:7.3f} {first[2] / cpu:10.2f} "
-            f"{own:10.3f}"
-        )
+        for kind, ours, baseline in zip(KINDS, first, other, strict=True):
+            figure(f"sections, tested: {kind}", case, ours, "s", beside=beside, baseline=baseline)
 
     with tempfile.TemporaryDirectory() as folder:
         spent, *_ = seconds(lambda: run(Order(family, Path(folder) / "f"), jobs=THREADS))
-        print(
-            f"  to files, {THREADS} processes  {spent:7.2f} s   "
-            f"{asked.count / spent:6.0f} variants/s"
-        )
+        figure(f"sections to files, {THREADS} processes", case, asked.count / spent, "variants/s")
         spans = net.fitted(blade, exporters.Options().tolerance)[0].v
         options = exporters.Options(spans=spans)
         target = Path(folder) / "x.step"
@@ -107,7 +102,8 @@ def main():
             for v in list(bg.family(blade, space, count=6, seed=7, reach=asked.reach))
         ][1:]
         clock, _, cpu = np.median(step, axis=0)
-        print(f"  STEP, one core        {clock:7.2f} s a blade, {cpu:.2f} of the processor")
+        figure("STEP of a variant, one core: clock", asked.blade, clock, "s")
+        figure("STEP of a variant, one core: processor", asked.blade, cpu, "s")
 
 
 if __name__ == "__main__":

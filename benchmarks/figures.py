@@ -54,7 +54,9 @@ def figure(
         Its figure, in the same unit.
     """
     ours = f"{value:.4g} {unit}".strip()
-    other = "" if baseline is None else f"{beside} {baseline:.4g} {unit}, {baseline / value:.3g} x"
+    other = "" if baseline is None else f"{beside} {baseline:.4g} {unit}"
+    if other and value:
+        other += f", {baseline / value:.3g} x"
     print(f"{what:40s} {case:22s} {ours:>16s}   {other}", flush=True)
     if os.environ.get(TABLE):
         row = {"what": what, "case": case, "value": value, "unit": unit}

@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from figures import figure
 
 import bladegen as bg
 from bladegen.arrays import Array
@@ -48,8 +49,8 @@ def off(one: BladeDefinition, other: BladeDefinition) -> float:
 
 
 def main() -> None:
+    """Print what each format keeps of each blade."""
     blades = [*map(bg.read, bg.bundled()), swept()]
-    print(f"{'file':12} {'blade':16} {'mm':>8} {'rows':>6} {'write s':>8} {'read s':>8}")
     for file in FILES:
         for first in blades:
             with tempfile.TemporaryDirectory() as folder:
@@ -59,10 +60,11 @@ def main() -> None:
                 written = time.perf_counter()
                 second = bg.read(path)
                 done = time.perf_counter()
-                print(
-                    f"{file:12} {first.name:16} {off(first, second):8.3f} "
-                    f"{len(second.chord.grid):6d} {written - start:8.2f} {done - written:8.2f}"
-                )
+                case = f"{file}, {first.name}"
+                figure("out and in again, off by", case, off(first, second), "mm")
+                figure("rows of chord", case, len(second.chord.grid), "")
+                figure("written", case, written - start, "s")
+                figure("read", case, done - written, "s")
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import gmsh
 import numpy as np
+from figures import figure
 
 import bladegen as bg
 from bladegen import cad
@@ -23,11 +24,7 @@ FILES = {"default": cad.DEFAULT_TOLERANCE, "light": 1e-3}
 
 
 def main() -> None:
-    """Print a row a file and density."""
-    print(
-        "blade    file     tip    size mm  CPU, s   triangles  volumes  closed  "
-        "area off by  volume off by  worst, sides  worst, all"
-    )
+    """Mesh each file at each density."""
     with tempfile.TemporaryDirectory() as folder:
         for name in bg.bundled():
             blade = bg.Blade.from_definition(bg.read(name))
@@ -37,13 +34,12 @@ def main() -> None:
                     solid = cad.solid(blade, tolerance=tolerance, tip=tip)
                     bg.export(blade, path, tolerance=tolerance, tip=tip)
                     for size in SIZES:
-                        print(
-                            f"{name:8s} {label:8s} {tip.__name__[:-4]:6s}", row(path, size, solid)
-                        )
+                        case = f"{name}, {label}, {tip.__name__[:-4]} tip, {size:g} mm"
+                        measure(case, path, size, solid)
 
 
-def row(path: Path, size: float, solid: cad.Solid) -> str:
-    """Mesh a file's surface and say how that went."""
+def measure(case: str, path: Path, size: float, solid: cad.Solid) -> None:
+    """Mesh a file's surface and print how that went."""
     gmsh.initialize(interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
@@ -65,12 +61,17 @@ def row(path: Path, size: float, solid: cad.Solid) -> str:
     made = TriangleMesh(points.reshape(-1, 3) / cad.MILLIMETRES, np.concatenate(faces))
     edges = np.sort(np.concatenate([made.faces[:, [i, (i + 1) % 3]] for i in range(3)]))
     _, times = np.unique(edges, axis=0, return_counts=True)
-    return (
-        f"{size:7.0f}  {spent:7.1f}  {len(made.faces):9d}  {volumes:7d}  "
-        f"{'yes' if np.all(times == 2) else 'NO':6s}  {made.area / solid.area - 1:+11.1e}  "
-        f"{made.volume / solid.volume - 1:+13.1e}  {min(worst[:2]):12.2f}  "
-        f"{min(worst):10.1e}"
-    )
+    for what, value, unit in (
+        ("gmsh, processor", spent, "s"),
+        ("gmsh, triangles", len(made.faces), ""),
+        ("gmsh, volumes", volumes, ""),
+        ("gmsh, edges not of two triangles", np.count_nonzero(times != 2), ""),
+        ("gmsh, area off by", made.area / solid.area - 1, ""),
+        ("gmsh, volume off by", made.volume / solid.volume - 1, ""),
+        ("gmsh, worst quality, sides", min(worst[:2]), ""),
+        ("gmsh, worst quality, all faces", min(worst), ""),
+    ):
+        figure(what, case, float(value), unit)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+from figures import figure
 
 import bladegen as bg
 from bladegen.arrays import Array
@@ -36,9 +37,8 @@ def apart(wanted: Array, got: Array) -> Array:
 
 
 def main() -> None:
+    """Print how far each variant comes back from itself."""
     space = bg.ShapeSpace.bundled()
-    print("| blade | change | stations | s | kB | max mm | RMS mm |")
-    print("| --- | --- | --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "variant.yaml"
         for name in bg.bundled():
@@ -57,12 +57,12 @@ def main() -> None:
                 again = bg.Blade.from_definition(bg.read(path))
                 pairs = zip(variant.sections(SPANS, u), again.sections(SPANS), strict=True)
                 off = 1e3 * np.array([apart(wanted, got) for wanted, got in pairs])
-                print(
-                    f"| {name} | {said} | {len(again.eta)} | {spent:.1f} | "
-                    f"{path.stat().st_size / 1e3:.0f} | {off.max():.2f} | "
-                    f"{np.sqrt(np.mean(off**2)):.3f} |",
-                    flush=True,
-                )
+                case = f"{name}, {said}"
+                figure("windIO round trip, largest distance", case, off.max(), "mm")
+                figure("windIO round trip, RMS", case, np.sqrt(np.mean(off**2)), "mm")
+                figure("windIO stations", case, len(again.eta), "")
+                figure("windIO file", case, path.stat().st_size / 1e3, "kB")
+                figure("windIO, fitted and written", case, spent, "s")
 
 
 if __name__ == "__main__":

@@ -33,6 +33,7 @@ import bladegen as bg
 from bladegen import cad, cad_files, checks, edges, properties
 from bladegen.crossing import crossing_sections
 from bladegen.errors import BladegenError, PerturbationError
+from bladegen.tips import Tip, flat_tip, round_tip
 
 PIECE = 10  # blades of one worker process
 MESHED = 10  # every so many-th solid is meshed by gmsh
@@ -56,7 +57,7 @@ RANGES = {
 }
 
 
-def drawn(number: int, seed: int, space: bg.ShapeSpace) -> tuple[bg.Blade, float, cad.Tip, int]:
+def drawn(number: int, seed: int, space: bg.ShapeSpace) -> tuple[bg.Blade, float, Tip, int]:
     """Return blade `number`, its tolerance and tip, and how many draws were refused before it."""
     names = bg.bundled()
     place, name = divmod(number, len(names))
@@ -76,7 +77,7 @@ def drawn(number: int, seed: int, space: bg.ShapeSpace) -> tuple[bg.Blade, float
         except PerturbationError:
             continue
         tolerance = TOLERANCES[place % len(TOLERANCES)]
-        return variant, tolerance, (cad.flat_tip, cad.round_tip)[tip], refused
+        return variant, tolerance, (flat_tip, round_tip)[tip], refused
     raise RuntimeError(f"blade {number}: {DRAWS} perturbations refused")
 
 

@@ -72,7 +72,8 @@ def markdown(title: str, rows: Iterable[dict[str, Any]]) -> str:
         "| --- | --- | --- | --- | --- | --- |",
     ]
     for row in rows:
-        ratio = "" if row["baseline"] is None else f"{row['baseline'] / row['value']:.3g}"
+        compared = row["baseline"] is not None and row["value"]
+        ratio = f"{row['baseline'] / row['value']:.3g}" if compared else ""
         cells = (
             row["what"],
             row["case"],

@@ -10,6 +10,7 @@ The names below are loaded when first used, so that ``import bladegen`` stays fa
 """
 
 from importlib import import_module
+from logging import NullHandler, getLogger
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from bladegen.writers import write, write_airfoil
 
 __version__ = "0.1.0"
+
+getLogger(__name__).addHandler(NullHandler())  # who wants to hear more asks for it
 
 _HOME = {
     "Airfoil": "definition",

@@ -5,6 +5,7 @@ as they lie on the disk.  Lengths are metres unless a name says otherwise.
 """
 
 import json
+import logging
 import platform
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -24,6 +25,8 @@ from bladegen.rotor import Rotor, write_glb, write_step
 from bladegen.spanwise import spanwise, write_csv
 
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
+
+logger = logging.getLogger(__name__)
 
 DEFAULT_FORMATS = ("step", "stl", "glb", "png")
 LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk", "h5py")
@@ -157,6 +160,7 @@ class _Ledger:
         finally:
             spent = time.perf_counter() - start
             self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
+            logger.debug("%s: %.2f s", stage, spent)
 
     @contextmanager
     def writing(self, path: Path, stage: str) -> Iterator[Path]:

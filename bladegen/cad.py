@@ -6,6 +6,7 @@ Solids are in millimetres, as STEP files of machine parts are; everything else i
 cadquery and OCP are imported when first needed.
 """
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -27,6 +28,8 @@ __all__ = [
     "solid",
     "volume",
 ]
+
+logger = logging.getLogger(__name__)
 
 MILLIMETRES = 1000.0
 SEWING = 1e-4  # mm; edges of one net meet to rounding, so this is slack, not repair
@@ -113,6 +116,17 @@ def solid(
     """
     net, deviation = fitted(blade, tolerance, sections=sections, spans=spans, progress=progress)
     deviation = Deviation.of([*deviation.parts, *measured(net, blade, tip)])
+    logger.info(
+        "%s: %d sections of %d landmarks, off the blade by %.4f mm at most (%s, eta = %.4f), "
+        "%.5f mm RMS",
+        blade.name,
+        len(net.v),
+        len(net.u),
+        deviation.maximum * MILLIMETRES,
+        deviation.face,
+        deviation.eta,
+        deviation.rms * MILLIMETRES,
+    )
     gap = np.linalg.norm(net.poles[0] - net.poles[-1], axis=-1)
     blunt = bool(gap.max() > CLOSED_EDGE)
     if blunt and gap.min() <= CLOSED_EDGE:

@@ -8,7 +8,7 @@ when first needed.
 import io
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -93,11 +93,7 @@ def read_step(path: Path) -> Any:
     """
     from OCP.STEPControl import STEPControl_Reader
 
-    with _quietly():
-        reader = STEPControl_Reader()
-        if reader.ReadFile(str(path)).name != "IFSelect_RetDone" or not reader.TransferRoots():
-            raise CadError(f"{path}: not a STEP file that OCCT can read")
-        return reader.OneShape()
+    return _transferred(STEPControl_Reader, path, "a STEP file")
 
 
 def write_iges(solid: Solid, path: Path, *, timestamp: str | None = None) -> None:
@@ -141,10 +137,15 @@ def read_iges(path: Path) -> Any:
     """
     from OCP.IGESControl import IGESControl_Reader
 
+    return _transferred(IGESControl_Reader, path, "an IGES file")
+
+
+def _transferred(control: Callable[[], Any], path: Path, what: str) -> Any:
+    """Return the shape that a reader of OCCT's makes of a file."""
     with _quietly():
-        reader = IGESControl_Reader()
+        reader = control()
         if reader.ReadFile(str(path)).name != "IFSelect_RetDone" or not reader.TransferRoots():
-            raise CadError(f"{path}: not an IGES file that OCCT can read")
+            raise CadError(f"{path}: not {what} that OCCT can read")
         return reader.OneShape()
 
 

@@ -1,6 +1,7 @@
 """The command line: parse, call, print.  Nothing is computed here."""
 
 import json
+import logging
 import sys
 from pathlib import Path
 from typing import Annotated, Any
@@ -28,6 +29,7 @@ from bladegen.cli_studio import studio
 from bladegen.cli_view import KEYS, plot, preview
 from bladegen.errors import BladegenError
 from bladegen.terminal import (
+    log_to_terminal,
     print_figures,
     print_findings,
     print_summary,
@@ -81,10 +83,21 @@ def _missing(error: ImportError) -> str:
 
 
 @app.callback(invoke_without_command=True)
-def version(
+def begin(
     show: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+    verbose: Annotated[
+        int,
+        typer.Option(
+            "-v",
+            "--verbose",
+            count=True,
+            help="Say what is done (before a command); -vv: all.",
+        ),
+    ] = 0,
 ) -> None:
     """Wind turbine blades from spanwise tables to STEP solids, meshes and pictures."""
+    if verbose:
+        log_to_terminal(logging.INFO if verbose == 1 else logging.DEBUG)
     if show:
         typer.echo(f"bladegen {__version__}")
         raise typer.Exit

@@ -5,6 +5,7 @@ which product: the solid, the mesh, the grid, or the blade itself.  Files appear
 at all.
 """
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -31,6 +32,8 @@ __all__ = [
     "format_of",
     "write",
 ]
+
+logger = logging.getLogger(__name__)
 
 UNITS = {"m": 1.0, "mm": 1000.0}
 STL_HEADER = 80  # bytes of free text at the start of a binary STL file
@@ -239,6 +242,8 @@ def _write_definition(products: Products, path: Path) -> None:
         progress=products.progress,
     )
     products.remarks.extend(said)
+    for remark in said:
+        logger.info("%s: %s", path.name, remark)
 
 
 FORMATS = {

@@ -45,6 +45,8 @@ class Block:
         How many draws each took.
     reasons : tuple of str
         What is wrong with each; "" if nothing is.
+    refused : tuple of str
+        What was wrong with the first draw of each; "" if nothing was.
     batch : Batch
         Their sections.
     """
@@ -53,6 +55,7 @@ class Block:
     values: Array
     attempts: Indices
     reasons: tuple[str, ...]
+    refused: tuple[str, ...]
     batch: Batch
 
     @property
@@ -133,12 +136,12 @@ class Family:
         made: dict[str, Any] = {"dtype": dtype, "measured": measured}
         values = self.design.values[index]
         batch = self._sections.evaluate(*self._split(values), **made)
-        reasons = self._reasons(values, batch.faults, batch.relative_thickness)
-        values, attempts, reasons = self._redrawn(index, values, reasons)
+        refused = self._reasons(values, batch.faults, batch.relative_thickness)
+        values, attempts, reasons = self._redrawn(index, values, refused)
         again = np.flatnonzero(attempts > 1)
         if again.size:
             batch.take(again, self._sections.evaluate(*self._split(values[again]), **made))
-        return Block(index, values, attempts, tuple(reasons), batch)
+        return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
 
     def named(self, block: Block, place: int) -> Blade:
         """Return one variant of a block as a blade."""

@@ -3,6 +3,7 @@
 Blocks do not know of each other, so who makes them and in what order changes nothing.
 """
 
+import logging
 import signal
 from collections.abc import Callable, Generator
 from contextlib import closing
@@ -25,6 +26,8 @@ from bladegen.net import fitted
 from bladegen.spanwise import UNITS
 
 __all__ = ["Order", "run"]
+
+logger = logging.getLogger(__name__)
 
 TIMESTAMP = "1970-01-01T00:00:00"  # in STEP files, so that the same blade makes the same bytes
 FEW = 8  # variants in a block that writes files for each
@@ -136,6 +139,13 @@ def run(
         left = order.blocks()
         before = done = len(family) - _variants(order, left)
         progress(done)
+        logger.info(
+            "%s: %d of %d variants are there, %d blocks to make",
+            order.target,
+            done,
+            len(family),
+            len(left),
+        )
         if left:
             place.make_sections(family.eta, family.blade.u, len(family), order.dtype)
             if order.suffixes:
@@ -148,9 +158,18 @@ def run(
             else:
                 made = (_make(order, number) for number in left)
             with closing(made):
-                for number in made:
+                for number, again in made:
                     done += _variants(order, [number])
                     progress(done)
+                    logger.info(
+                        "block %d is whole, %d variants drawn again; %d of %d variants are there",
+                        number,
+                        len(again),
+                        done,
+                        len(family),
+                    )
+                    for said in again:
+                        logger.debug("%s", said)
         place.finish(len(family))
     return done - before
 
@@ -161,8 +180,11 @@ def _variants(order: Order, blocks: list[int]) -> int:
     return sum(min(size, count - number * size) for number in blocks)
 
 
-def _make(order: Order, number: int) -> int:
-    """Make one block, whole; return its number."""
+Made = tuple[int, list[str]]  # a block's number, and which variants were drawn again and why
+
+
+def _make(order: Order, number: int) -> Made:
+    """Make one block, whole."""
     from threadpoolctl import threadpool_limits
 
     family = order.family
@@ -173,7 +195,16 @@ def _make(order: Order, number: int) -> int:
         for suffix in order.suffixes:
             rows |= _exported(order, block, suffix)
     order.place.write_block(number, block, rows)
-    return number
+    return number, _drawn_again(family, block)
+
+
+def _drawn_again(family: Family, block: Block) -> list[str]:
+    """Say which variants of a block were drawn more than once, and why."""
+    return [
+        f"{family.name(int(block.index[row]))}: {block.attempts[row]} draws, the first refused: "
+        f"{block.refused[row]}"
+        for row in np.flatnonzero(block.attempts > 1)
+    ]
 
 
 def _block(order: Order, index: Indices) -> Block:
@@ -249,11 +280,11 @@ def _start(order: Order) -> None:
     _ORDER[:] = [order]
 
 
-def _make_here(number: int) -> int:
+def _make_here(number: int) -> Made:
     return _make(_ORDER[0], number)
 
 
-def _in_processes(order: Order, left: list[int], jobs: int) -> Generator[int]:
+def _in_processes(order: Order, left: list[int], jobs: int) -> Generator[Made]:
     """Make blocks in processes of this machine; begin again with what a dead one left."""
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from concurrent.futures.process import BrokenProcessPool
@@ -266,16 +297,17 @@ def _in_processes(order: Order, left: list[int], jobs: int) -> Generator[int]:
         )
         try:
             for task in as_completed([pool.submit(_make_here, number) for number in left]):
-                number = task.result()
-                left = [other for other in left if other != number]
+                made = task.result()
+                left = [other for other in left if other != made[0]]
                 restarts = 0
-                yield number
+                yield made
         except (KeyboardInterrupt, GeneratorExit):
             for process in set(active_children()) - others:
                 process.terminate()
             raise
         except BrokenProcessPool:
             restarts += 1
+            logger.warning("%s: a worker process died, another one goes on", order.target)
             if restarts > RESTARTS:
                 raise FamilyError(
                     f"{order.target}: worker processes died {restarts} times in a row (out of "
@@ -285,7 +317,7 @@ def _in_processes(order: Order, left: list[int], jobs: int) -> Generator[int]:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _on_cluster(order: Order, left: list[int], client: Any) -> Generator[int]:
+def _on_cluster(order: Order, left: list[int], client: Any) -> Generator[Made]:
     """Make blocks on a Dask cluster; it hands a dead worker's blocks to the others."""
     from distributed import as_completed
 

@@ -1,8 +1,9 @@
-"""Files that are whole or not there: written under a temporary name, then renamed."""
+"""Files that are whole or not there: written under a temporary name, then renamed, and logged."""
 
 import errno
 import fcntl
 import hashlib
+import logging
 import os
 import re
 import tempfile
@@ -15,6 +16,8 @@ from bladegen.errors import ExportError
 __all__ = ["alone", "digest_of", "folder", "replacing", "require_end", "safe_stem"]
 
 END_SLACK = 8  # bytes of line ends behind the last word
+
+logger = logging.getLogger(__name__)
 
 
 @contextmanager
@@ -40,6 +43,7 @@ def replacing(path: Path) -> Iterator[Path]:
         yield temporary
         temporary.chmod(0o666 & ~_umask())
         temporary.replace(path)
+        logger.info("wrote %s, %d bytes", path, path.stat().st_size)
     except OSError as error:
         raise ExportError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:

@@ -47,13 +47,18 @@ class TriangleMesh:
         Points [m].
     faces : (f, 3) array of int
         Vertices of each triangle, counter-clockwise seen from outside.
+    places : (v, 2) array, optional
+        Span fraction eta and landmark parameter u of each vertex, of one where several coincide.
     """
 
     vertices: Array
     faces: Indices
+    places: Array | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", readonly(self.vertices))
+        if self.places is not None:
+            object.__setattr__(self, "places", readonly(self.places))
         faces = np.array(self.faces, dtype=np.int64)
         faces.flags.writeable = False
         object.__setattr__(self, "faces", faces)
@@ -77,14 +82,21 @@ class TriangleMesh:
 
 def from_blade(blade: Blade, *, stations: int = SECTIONS, tip: Tip = flat_tip) -> TriangleMesh:
     """Mesh a blade by `stations` sections where it bends, ended by `tip`."""
-    poles = arcs(blade, tip)
+    eta, poles = blade.stations(stations), arcs(blade, tip)
+    places = np.stack(np.meshgrid(eta, blade.u, indexing="ij"), axis=-1).reshape(-1, 2)
     across = None
     if poles is not None:
-        across = on_arcs(poles[:, None], np.linspace(0.0, 1.0, ACROSS + 1)[None])
-    return surface(blade.sections(blade.stations(stations)), across)
+        w = np.linspace(0.0, 1.0, ACROSS + 1)
+        across = on_arcs(poles[:, None], w[None])
+        side = blade.u[: len(poles), None]
+        nearer = np.where(w <= 0.5, side, 1.0 - side).reshape(-1)
+        places = np.concatenate([places, np.stack([np.ones_like(nearer), nearer], axis=-1)])
+    return surface(blade.sections(eta), across, places)
 
 
-def surface(sections: Array, across: Array | None = None) -> TriangleMesh:
+def surface(
+    sections: Array, across: Array | None = None, places: Array | None = None
+) -> TriangleMesh:
     """Mesh a grid of sections.
 
     Parameters
@@ -96,6 +108,8 @@ def surface(sections: Array, across: Array | None = None) -> TriangleMesh:
     across : (n // 2 + 1, q, 3) array, optional
         Rows over the tip from suction to pressure side, q odd, from the trailing edge to the
         leading edge, where they are one point.  Without them the tip is flat.
+    places : (m, 2) array, optional
+        Of all these points, for `TriangleMesh.places`.
 
     Raises
     ------
@@ -126,7 +140,8 @@ def surface(sections: Array, across: Array | None = None) -> TriangleMesh:
             *(() if across is None else (_cap(points, rows[0])[:, ::-1],)),
         ]
     )
-    return TriangleMesh(*_welded(points, faces, grid, rows))
+    used, faces = _welded(points, faces, grid, rows)
+    return TriangleMesh(points[used], faces, None if places is None else places[used])
 
 
 def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
@@ -219,13 +234,13 @@ def _cap(points: Array, row: Indices) -> Indices:
     return _quads(points, pressure[:-1], suction[:-1], suction[1:], pressure[1:])
 
 
-def _welded(points: Array, faces: Indices, grid: Indices, rows: Indices) -> tuple[Array, Indices]:
-    """Join neighbours that coincide, drop collapsed triangles and unused vertices."""
+def _welded(points: Array, faces: Indices, grid: Indices, rows: Indices) -> tuple[Indices, Indices]:
+    """Join neighbours that coincide, drop collapsed triangles; return used points and faces."""
     faces = _merged(points, grid, rows)[faces]
     a, b, c = faces.T
     faces = faces[(a != b) & (b != c) & (c != a)]
     used, faces = np.unique(faces, return_inverse=True)
-    return points[used], faces.reshape(-1, 3)
+    return used, faces.reshape(-1, 3)
 
 
 def _merged(points: Array, grid: Indices, rows: Indices) -> Indices:

@@ -8,19 +8,18 @@ distance, and the relative thickness is the largest distance between the two sid
 normal to the chord line, over the chord.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from bladegen.arrays import Array, Indices, Mask
+from bladegen.roots import ITERATIONS, PARAMETER_TOLERANCE, bracketed, falling
 
 __all__ = ["SectionCurves", "SectionSplines", "resizing"]
 
-PARAMETER_TOLERANCE = 1e-8  # of u, before the last step; places are off by a thousand squares of it
-ITERATIONS = 60  # bisection alone needs 40
-SETTLED = 1e-13  # change of a map that ends its iteration
+SETTLED = 1e-13  # change of a stretch that ends its iteration
+EVEN = 1e-11  # of `AMBIGUOUS`; differences of distances that are rounding
 SAME_NOSE = 3  # landmarks; nearer peaks are one nose
 RIVAL = 3e-2  # of the squared distance; lower peaks at landmarks no stretch makes the highest
 AMBIGUOUS = 2e-5  # of a chord; noses whose distances differ by less share the leading edge
@@ -83,19 +82,6 @@ class SectionSplines:
         A, c : (k, 2, 2), (k, 2) arrays
             ``points @ A + c`` has unit chord and the thickness.
         """
-        A, c, rivals = self._step(points, relative_thickness)
-        rows = np.flatnonzero(rivals)  # with two noses, stretching moves the leading edge
-        for _ in range(ITERATIONS):
-            if not rows.size:
-                break
-            wanted = None if relative_thickness is None else relative_thickness[rows]
-            B, d, _ = self._step(points[rows] @ A[rows] + c[rows][:, None], wanted)
-            A[rows], c[rows] = A[rows] @ B, (c[rows][:, None] @ B)[:, 0] + d
-            rows = rows[np.abs(B - np.eye(2)).max(axis=(1, 2)) > SETTLED]
-        return A, c
-
-    def _step(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array, Mask]:
-        """Return the maps of `normalising`, exact but where a section has two noses, and where."""
         curves = self.fit(points)
         A, c, passed = resizing(
             np.stack(curves._noses),
@@ -104,7 +90,12 @@ class SectionSplines:
             None if relative_thickness is None else curves.thickness,
             relative_thickness,
         )
-        return A, c, curves.has_rivals | passed
+        rows = np.flatnonzero(curves.has_rivals | passed)
+        if relative_thickness is not None and rows.size:
+            B, d, place = curves.take(rows).shared(relative_thickness[rows])
+            shared = curves.has_rivals[rows] | (place > 0.0)
+            A[rows[shared]], c[rows[shared]] = B[shared], d[shared]
+        return A, c
 
 
 def resizing(
@@ -130,8 +121,8 @@ def resizing(
     A, c : (..., 2, 2), (..., 2) arrays
         ``points @ A + c``; leading edge and trailing-edge midpoint stay but for the scaling.
     passed : (...) array of bool
-        Where another nose shares the leading edge of the result or is it, so that another step
-        is needed.
+        Where another nose may share the leading edge of the result or be it, so that the map is
+        not the one sought.
     """
     line = trailing_edge - leading_edge
     length = np.linalg.norm(line, axis=-1)
@@ -144,13 +135,19 @@ def resizing(
         for _ in range(3):  # noses beside the chord line move with the stretch
             stretch = relative_thickness * reach.max(axis=0) / thickness
             reach = np.hypot(length - x, stretch * y)
-    # the farthest point stays the farthest under the stretch but where another nose passes it
-    passed = reach[0] - reach[1] < 2.0 * AMBIGUOUS * length
+    # the farthest point stays the farthest under the stretch but where another nose passes it,
+    # whose peak moves along the contour meanwhile and gains by that
+    passed = reach[0] - reach[1] < RIVAL * length
     passed &= np.any(noses[0] != noses[1], axis=-1)
+    return *_stretching(leading_edge, normal, stretch, reach), passed
+
+
+def _stretching(start: Array, normal: Array, stretch: Array, reach: Array) -> tuple[Array, Array]:
+    """Return the maps that stretch along a normal from a point, then bring noses to unit chord."""
     lift = (stretch - 1.0)[..., None, None] * normal[..., :, None] * normal[..., None, :]
     scale = 1.0 / reach.max(axis=0)
-    shift = -(leading_edge[..., None, :] @ lift)[..., 0, :] * scale[..., None]
-    return scale[..., None, None] * (np.eye(2) + lift), shift, passed
+    shift = -(start[..., None, :] @ lift)[..., 0, :] * scale[..., None]
+    return scale[..., None, None] * (np.eye(2) + lift), shift
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,6 +174,10 @@ class SectionCurves:
             6 * a * h + 2 * b,
         )
 
+    def take(self, rows: Indices) -> "SectionCurves":
+        """Return some of the sections."""
+        return SectionCurves(self.u, self.points[rows], self.slopes[rows])
+
     @cached_property
     def trailing_edge(self) -> Array:
         """The trailing-edge midpoints, (k, 2)."""
@@ -199,7 +200,7 @@ class SectionCurves:
             return np.sum(r * d1, axis=-1), np.sum(d1 * d1 + r * d2, axis=-1)
 
         u = self.u
-        return self.at(_root(receding, u[landmark - 1], u[landmark], u[landmark + 1]))[0]
+        return self.at(falling(receding, u[landmark - 1], u[landmark], u[landmark + 1]))[0]
 
     @cached_property
     def _noses(self) -> tuple[Array, Array]:
@@ -215,7 +216,10 @@ class SectionCurves:
         other = np.argmax(np.where(peaks, distances, -1.0), axis=1)
         other = np.where(peaks.any(axis=1), other, best)
         farthest = self._peak(best + first)
-        return farthest, farthest if np.array_equal(other, best) else self._peak(other + first)
+        if np.array_equal(other, best):
+            return farthest, farthest
+        alone = (other == best)[:, None]
+        return farthest, np.where(alone, farthest, self._peak(other + first))
 
     @property
     def has_rivals(self) -> Mask:
@@ -261,6 +265,70 @@ class SectionCurves:
         axes = np.stack([along, np.stack([-along[:, 1], along[:, 0]], axis=-1)], axis=-1)
         return SectionCurves(self.u, self.points @ axes, self.slopes @ axes)
 
+    def shared(self, relative_thickness: Array) -> tuple[Array, Array, Array]:
+        """Return the maps of `resizing` where two noses may share the leading edge, and its place.
+
+        Places (k,) are 0 at the nose that is the farthest before, 1 at the other.
+
+        The stretch moves noses away from the chord line, or towards it, so that their distances
+        depend on where the line runs between them, and it runs where their distances say: its
+        place is found by the signs of the difference.  A section that grows thinner may be led by
+        either nose: by the one that was farther, or by both if none was.
+        """
+        noses = np.stack(self._noses)
+
+        def lead(place: Array, rows: Indices) -> Array:
+            one, two = noses[0, rows], noses[1, rows]
+            point: Array = one + place[:, None] * (two - one)
+            return point
+
+        def excess(place: Array, rows: Indices) -> Array:
+            some = self.take(rows), noses[:, rows], relative_thickness[rows]
+            return SectionCurves._stretched(*some, lead(place, rows))[-1]
+
+        place = bracketed(excess, EVEN, self.has_rivals)
+        start = lead(place, np.arange(len(place)))
+        normal, stretch, reach, _ = self._stretched(noses, relative_thickness, start)
+        return *_stretching(start, normal, stretch, reach), place
+
+    def _stretched(
+        self, noses: Array, relative_thickness: Array, lead: Array
+    ) -> tuple[Array, Array, Array, Array]:
+        """Stretch sections normal to the line from points `lead` (k, 2) to their edges.
+
+        Returns the normals, the stretch to the relative thickness, the noses' distances then (2,
+        k), and by how much of `AMBIGUOUS` the second nose (of `noses`, (2, k, 2)) is farther
+        than it would be if the leading edge lay on the line; where only one is left, how far it
+        lies from the line, positive on the second's side.
+        """
+        edge = self.trailing_edge
+        along = (edge - lead) / self._reach(lead)[:, None]
+        normal = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+        axes = np.stack([along, normal], axis=-1)
+        turned = SectionCurves(self.u, (self.points - edge[:, None]) @ axes, self.slopes @ axes)
+        thickness, far = turned._height, ((noses - edge)[..., None, :] @ axes)[..., 0, :]
+        side = np.sign(far[1, :, 1] - far[0, :, 1])
+        factors = np.ones((len(lead), 2))
+        for _ in range(ITERATIONS):  # other points become the farthest, to second order
+            stretch = factors[:, 1].copy()
+            x, y = far[..., 0], far[..., 1]
+            free = thickness**2 - (relative_thickness * y) ** 2
+            free = np.maximum(free, SETTLED * thickness**2)  # or no stretch would do
+            factors[:, 1] = relative_thickness * np.max(np.abs(x) / np.sqrt(free), axis=0)
+            points, slopes = turned.points * factors[:, None], turned.slopes * factors[:, None]
+            far = np.stack(SectionCurves(self.u, points, slopes)._noses) / factors
+            if np.all(np.abs(factors[:, 1] - stretch) <= SETTLED):
+                break
+        far *= factors
+        reach = np.linalg.norm(far, axis=-1)
+        y = side * far[..., 1]
+        ahead = np.where(y[0] > y[1], -1.0, 1.0) * (reach[0] - reach[1]) / reach.max(axis=0)
+        near, across = y.min(axis=0), np.ptp(y, axis=0)
+        share = np.clip(-near / np.where(across > 0.0, across, 1.0), 0.0, 1.0)
+        held = 2.0 * np.sin(np.arcsin(1.0 - 2.0 * share) / 3.0)  # the cubic of `leading_edge`
+        excess = np.where(across > 0.0, held - ahead / AMBIGUOUS, near)
+        return normal, factors[:, 1], reach, excess
+
     @property
     def edge_width(self) -> Array:
         """Distance from the pressure to the suction side's end normal to the chord line, (k,)."""
@@ -300,7 +368,7 @@ class SectionCurves:
             height, slope, bend, opposite = self._gap(u, opposite)
             return slope, bend
 
-        _root(rising, self.u[best - 1], self.u[best], self.u[best + 1])
+        falling(rising, self.u[best - 1], self.u[best], self.u[best + 1])
         return height
 
     def _gap(self, u: Array, w: Array) -> tuple[Array, Array, Array, Array]:
@@ -325,25 +393,3 @@ class SectionCurves:
             p2[..., 1] - q2[..., 1] * rate**2 - q1[..., 1] * bend,
             w,
         )
-
-
-def _root(
-    f: Callable[[Array], tuple[Array, Array]], low: Array, start: Array, high: Array
-) -> Array:
-    """Find where f falls through zero between `low` and `high`: Newton, kept by bisection.
-
-    `f` returns the value and its derivative; positive at `low`, negative at `high`.
-    """
-    u, low, high = start.copy(), low.copy(), high.copy()
-    for _ in range(ITERATIONS):
-        value, slope = f(u)
-        low, high = np.where(value > 0, u, low), np.where(value > 0, high, u)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            newton = u - value / slope
-        inside = (newton >= low) & (newton <= high)
-        following = np.where(inside, newton, 0.5 * (low + high))
-        settled = np.all(np.abs(following - u) <= PARAMETER_TOLERANCE)
-        u = following
-        if settled:
-            break
-    return u

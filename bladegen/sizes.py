@@ -5,12 +5,13 @@ with the notation and the tolerances there.  Points are (2, n): x, then y; landm
 lie opposite.  Splines are linear in features (`batch`), and so are their slopes at landmarks.
 """
 
-from math import copysign, sqrt
+from math import asin, copysign, sin, sqrt
 from typing import NamedTuple
 
 from bladegen.arrays import Array
 from bladegen.compiled import compiled
-from bladegen.sections import AMBIGUOUS, ITERATIONS, PARAMETER_TOLERANCE, RIVAL, SAME_NOSE, SETTLED
+from bladegen.roots import ITERATIONS, PARAMETER_TOLERANCE, ROUNDING
+from bladegen.sections import AMBIGUOUS, EVEN, RIVAL, SAME_NOSE, SETTLED
 
 __all__ = ["Numbers", "Section", "combine", "sizing"]
 
@@ -53,57 +54,154 @@ def sizing(
 
     Maps are (a, b, c, d, e, f): x' = a x + c y + e and y' = b x + d y + f.
     """
-    total, own, again = resizing(s, target, work)
-    step = 0
-    while again and step < ITERATIONS:  # with two noses, stretching moves the leading edge
-        for f in range(len(s.c)):
-            now[f, 0] = s.c[f, 0] * total[0] + s.c[f, 1] * total[2]
-            now[f, 1] = s.c[f, 0] * total[1] + s.c[f, 1] * total[3]
-        now[-1, 0] += total[4]
-        now[-1, 1] += total[5]
-        combine(values, now, moved)
-        more, _, _ = resizing(Section(s.u, s.slopes, now, moved), target, work)
-        total = (
-            total[0] * more[0] + total[1] * more[2],
-            total[0] * more[1] + total[1] * more[3],
-            total[2] * more[0] + total[3] * more[2],
-            total[2] * more[1] + total[3] * more[3],
-            total[4] * more[0] + total[5] * more[2] + more[4],
-            total[4] * more[1] + total[5] * more[3] + more[5],
-        )
-        again = max(abs(more[0] - 1.0), abs(more[1]), abs(more[3] - 1.0)) > SETTLED
-        step += 1
+    total, own, rivals, passed = resizing(s, target, work)
+    if rivals or passed:
+        other, place = shared(s, values, target, rivals, now, moved, work)
+        total = other if rivals or place > 0.0 else total
     return total, own
 
 
 @compiled
-def resizing(s: Section, target: float, work: Array) -> tuple[Numbers, float, bool]:
-    """Return one step of `sizing`, the relative thickness, and whether noses share the edge."""
+def resizing(s: Section, target: float, work: Array) -> tuple[Numbers, float, bool, bool]:
+    """Return the map where one nose leads, the relative thickness, and whether another does.
+
+    The noses may share the edge of the section as it is, and that of the result.
+    """
     one, two, edge = noses(s, work)
     r1, r2 = distance(one, edge), distance(two, edge)
     chord, ahead = max(r1, r2), r1 - r2
     f = min(max(ahead / AMBIGUOUS, -1.0), 1.0)
     share = 0.5 - 0.25 * f * (3.0 - f * f)
-    lead = one[0] + share * (two[0] - one[0]), one[1] + share * (two[1] - one[1])
+    lead = between(one, two, share)
     length = distance(lead, edge)
-    ax, ay = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length
-    thickness = thickest(s, (ax, ay), work)
+    along = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length
+    thickness = thickest(s, along, work)
 
-    x1, y1 = turned(one[0] - lead[0], one[1] - lead[1], (ax, ay))
-    x2, y2 = turned(two[0] - lead[0], two[1] - lead[1], (ax, ay))
+    x1, y1 = turned(one[0] - lead[0], one[1] - lead[1], along)
+    x2, y2 = turned(two[0] - lead[0], two[1] - lead[1], along)
     q1, q2 = distance((x1, y1), (length, 0.0)), distance((x2, y2), (length, 0.0))
     stretch = 1.0
     for _ in range(3):  # noses beside the chord line move with the stretch
         stretch = target * max(q1, q2) / thickness
         q1 = distance((x1, stretch * y1), (length, 0.0))
         q2 = distance((x2, stretch * y2), (length, 0.0))
-    nearest = min(abs(ahead), (q1 - q2) / length)
-    again = one != two and nearest < 2.0 * AMBIGUOUS
-    scale, lift = 1.0 / max(q1, q2), stretch - 1.0
+    rivals = one != two and abs(ahead) < 2.0 * AMBIGUOUS
+    passed = one != two and q1 - q2 < RIVAL * length
+    return stretching(lead, along, stretch, max(q1, q2)), thickness / chord, rivals, passed
+
+
+@compiled
+def stretching(start: Numbers, along: Numbers, stretch: float, reach: float) -> Numbers:
+    """Return the map that stretches normal to a line from a point, then brings to unit chord."""
+    ax, ay = along
+    scale, lift = 1.0 / reach, stretch - 1.0
     a, b, d = 1.0 + lift * ay * ay, -lift * ax * ay, 1.0 + lift * ax * ax
-    e, f = lead[0] - (lead[0] * a + lead[1] * b), lead[1] - (lead[0] * b + lead[1] * d)
-    total = scale * a, scale * b, scale * b, scale * d, scale * e, scale * f
-    return total, thickness / chord, again
+    e, f = start[0] - (start[0] * a + start[1] * b), start[1] - (start[0] * b + start[1] * d)
+    return scale * a, scale * b, scale * b, scale * d, scale * e, scale * f
+
+
+@compiled
+def shared(
+    s: Section,
+    values: Array,
+    target: float,
+    rivals: bool,
+    now: Array,
+    moved: Array,
+    work: Array,
+) -> tuple[Numbers, float]:
+    """Return the map where noses share the edge (`SectionCurves.shared`), and their share.
+
+    The share is found as by `roots.bracketed`.
+    """
+    both = noses(s, work)
+    first, above = stretched(s, values, both, 0.0, target, now, moved, work)
+    if not above > EVEN and not rivals:
+        return first, 0.0
+    last, below = stretched(s, values, both, 1.0, target, now, moved, work)
+    sign = 1.0
+    if rivals and above <= EVEN and below >= -EVEN:
+        sign, above, below = -1.0, max(-above, EVEN), min(-below, -EVEN)
+    elif not above > EVEN:
+        return first, 0.0
+    elif not below < -EVEN:
+        return last, 1.0
+    total = first
+    place, low, high, kept = 0.0, 0.0, 1.0, 0
+    for _ in range(ITERATIONS):
+        before, place = place, low + (high - low) * (above / (above - below))
+        total, value = stretched(s, values, both, place, target, now, moved, work)
+        value *= sign
+        if value > 0.0:
+            low, above = place, value
+            below *= 0.5 if kept == 1 else 1.0
+            kept = 1
+        else:
+            high, below = place, value
+            above *= 0.5 if kept == -1 else 1.0
+            kept = -1
+        if abs(value) <= EVEN or abs(place - before) <= ROUNDING:
+            break
+    return total, place
+
+
+@compiled
+def stretched(
+    s: Section,
+    values: Array,
+    both: tuple[Numbers, ...],
+    place: float,
+    target: float,
+    now: Array,
+    moved: Array,
+    work: Array,
+) -> tuple[Numbers, float]:
+    """Return the map that stretches normal to a chord line between noses, and its excess.
+
+    The line ends at `place`, 0 at the first of the two noses, 1 at the second; the excess is
+    that of `SectionCurves._stretched`.
+    """
+    one, two, edge = both
+    lead = between(one, two, place)
+    length = distance(lead, edge)
+    ax, ay = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length
+    thickness = thickest(s, (ax, ay), work)
+    first = turned(one[0] - edge[0], one[1] - edge[1], (ax, ay))
+    second = turned(two[0] - edge[0], two[1] - edge[1], (ax, ay))
+    side = copysign(1.0, second[1] - first[1])
+    stretch, floor = 1.0, SETTLED * thickness * thickness
+    for _ in range(ITERATIONS):
+        before = stretch
+        free = max(thickness * thickness - (target * first[1]) ** 2, floor)
+        other = max(thickness * thickness - (target * second[1]) ** 2, floor)
+        stretch = target * max(abs(first[0]) / sqrt(free), abs(second[0]) / sqrt(other))
+        for f in range(len(s.c)):
+            now[f, 0] = s.c[f, 0] * ax + s.c[f, 1] * ay
+            now[f, 1] = (s.c[f, 1] * ax - s.c[f, 0] * ay) * stretch
+        now[-1, 0] -= edge[0] * ax + edge[1] * ay
+        now[-1, 1] -= (edge[1] * ax - edge[0] * ay) * stretch
+        combine(values, now, moved)
+        first, second, _ = noses(Section(s.u, s.slopes, now, moved), work)
+        first, second = (first[0], first[1] / stretch), (second[0], second[1] / stretch)
+        if abs(stretch - before) <= SETTLED:
+            break
+    y1, y2 = side * first[1] * stretch, side * second[1] * stretch
+    q1, q2 = distance((first[0], y1), (0.0, 0.0)), distance((second[0], y2), (0.0, 0.0))
+    ahead = (q1 - q2) / max(q1, q2)
+    if y1 > y2:
+        y1, y2, ahead = y2, y1, -ahead
+    total = stretching(lead, (ax, ay), stretch, max(q1, q2))
+    if first == second:
+        return total, y1
+    share = min(max(-y1 / (y2 - y1), 0.0), 1.0)
+    held = 2.0 * sin(asin(1.0 - 2.0 * share) / 3.0)
+    return total, held - ahead / AMBIGUOUS
+
+
+@compiled
+def between(one: Numbers, two: Numbers, share: float) -> Numbers:
+    """Return the point at a share of the way from one to another."""
+    return one[0] + share * (two[0] - one[0]), one[1] + share * (two[1] - one[1])
 
 
 @compiled

@@ -107,7 +107,11 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
                 f"{deviation['maximum']:.3f} mm at most, on the {deviation['on_face']}",
             ],
             ["", f"{deviation['rms']:.4f} mm RMS"],
-            ["solid's volume off by", f"{solid['volume_against_sections']:.1e}"],
+            [
+                "solid's volume",
+                f"{solid['volume_m3']:.4f} m3, {solid['tip_volume_m3']:.4f} in its tip",
+            ],
+            ["without its tip off by", f"{solid['volume_against_sections']:.1e}"],
             ["volume change on reading", f"{solid['volume_change_on_reading']:.1e}"],
         ]
     for suffix, figures_ in report.get("meshes", {}).items():

@@ -1,15 +1,18 @@
 """What the command line prints: tables, figures, progress.  rich is imported when needed."""
 
 import json
+import logging
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import typer
 
 __all__ = [
+    "log_to_terminal",
     "print_figures",
     "print_findings",
     "print_space",
@@ -20,13 +23,30 @@ __all__ = [
 ]
 
 
+@cache
+def _stderr() -> Any:
+    """The one console that progress and messages share, so that neither writes over the other."""
+    from rich.console import Console
+
+    return Console(stderr=True)
+
+
+def log_to_terminal(level: int) -> None:
+    """Show the package's messages from a level of `logging` on, on stderr."""
+    from rich.logging import RichHandler
+
+    logger = logging.getLogger("bladegen")
+    logger.setLevel(level)
+    shown = RichHandler(console=_stderr(), show_path=False, rich_tracebacks=False)
+    logger.handlers = [*(h for h in logger.handlers if not isinstance(h, RichHandler)), shown]
+
+
 @contextmanager
 def progress_bar() -> Iterator[Any]:
     """Show what is being done and for how long, on a terminal."""
-    from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    console = Console(stderr=True)
+    console = _stderr()
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
     quiet = not console.is_terminal
     with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
@@ -37,7 +57,6 @@ def progress_bar() -> Iterator[Any]:
 @contextmanager
 def variants_bar(count: int, what: str = "variants") -> Iterator[Any]:
     """Show how many of `count` variants are whole, the rate, and the time that remains."""
-    from rich.console import Console
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
@@ -47,7 +66,7 @@ def variants_bar(count: int, what: str = "variants") -> Iterator[Any]:
         TimeRemainingColumn,
     )
 
-    console = Console(stderr=True)
+    console = _stderr()
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),

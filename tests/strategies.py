@@ -96,6 +96,18 @@ def ellipse(thickness: float, count: int = 201) -> Array:
     return circle(count) * [1.0, thickness]
 
 
+def box(count: int, higher: Array) -> Array:
+    """(k, count, 2) blunt sections, suction sides `higher` (k,) than the pressure sides'.
+
+    Each is farthest from its edge at two corners; landmarks stand at evenly spaced parameters.
+    """
+    angle = np.linspace(0.0, 2.0 * np.pi, count)
+    x, y = np.cos(angle), np.sin(angle)
+    x, y = 0.5 + 0.5 * np.sign(x) * np.abs(x) ** 0.6, 0.6 * np.sign(y) * np.abs(y) ** 0.6
+    y = y * (1.0 + higher[:, None] * (y > 0))
+    return np.stack([np.broadcast_to(x, y.shape), y], axis=-1)
+
+
 def naca(thickness: float, camber: float, gap: float, m: int = 81) -> Array:
     """(2 m - 1, 2) four-digit airfoil with an open edge, suction side first."""
     x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, m)))

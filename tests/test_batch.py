@@ -65,6 +65,23 @@ def test_sections_with_two_noses_are_those_of_perturbed_blades(name):
         assert_allclose(sections[i], variant.sections(SPANS), rtol=0, atol=1e-9)
 
 
+def test_noses_that_pass_each_other_leave_no_step_and_are_followed_as_by_numpy():
+    blade, spans = batch_of("iea15mw").blade, np.linspace(0.084, 0.088, 41)
+    t = np.array([[-0.0985, -0.1117, 0.0408, -0.0565]])
+    change = AffineChange(thickness=1.0703, camber=1.029, chord=0.9345)
+    variant = blade.untested(space(), t[0], change)
+    profiles = variant.profiles(spans)
+    curves = blade.splines.fit(profiles)
+    assert 0 < curves.has_rivals.sum() < len(spans)
+    assert_allclose(curves.chord, 1.0, rtol=0, atol=1e-12)
+    assert_allclose(curves.relative_thickness, variant.wanted_thickness(spans), rtol=0, atol=3e-12)
+    window = Window.beyond_circles(blade.definition.stations)
+    result = SectionBatch(blade, space(), window, spans).evaluate(t, change)
+    assert_allclose(result.sections[0], variant.sections(spans), rtol=0, atol=1e-9)
+    steps = np.abs(np.diff(profiles, axis=0)).max(axis=(1, 2))
+    assert steps.max() < 2.0 * np.median(steps)
+
+
 @pytest.mark.parametrize("name", BLADES)
 def test_faults_are_those_of_an_exact_test(name):
     made = batch_of(name)

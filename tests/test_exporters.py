@@ -1,12 +1,13 @@
 import numpy as np
 import pytest
+import pyvista
 from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen import cad, cad_files, exporters, mesh
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.grid import Spacing
-from bladegen.tips import round_tip
+from bladegen.tips import flat_tip, round_tip
 
 MESHES = [".stl", ".ply", ".glb", ".obj", ".3mf", ".vtp"]
 
@@ -24,8 +25,6 @@ def made(blade):
 def read(path):
     """A mesh file as vertices and faces, VTP by pyvista and others by trimesh."""
     if path.suffix == ".vtp":
-        import pyvista
-
         data = pyvista.read(path)
         return mesh.to_trimesh(mesh.TriangleMesh(data.points, data.regular_faces))
     return mesh.read(path)
@@ -78,6 +77,22 @@ def test_grids_by_suffix(blade, suffix, tmp_path):
     )
     assert len(first) > 10_000
     assert first == second
+
+
+@pytest.mark.parametrize("tip", [flat_tip, round_tip])
+def test_points_of_a_vtp_file_say_where_they_are(blade, tip, tmp_path):
+    path = exporters.export(blade, tmp_path / "a.vtp", stations=40, tip=tip, unit="mm")
+    found = pyvista.read(path)
+    eta, where = np.unique(found["eta"], return_inverse=True)
+    landmark = np.argmin(np.abs(blade.u - found["u"][:, None]), axis=1)
+    assert_allclose(blade.u[landmark], found["u"], atol=1e-12)
+    sections = blade.sections(eta)
+    off = np.linalg.norm(found.points / 1e3 - sections[where, landmark], axis=1)
+    on_arcs = off > 1e-6
+    assert len(eta) == 40
+    assert np.all(found["eta"][on_arcs] == 1.0)
+    assert np.any(on_arcs) == (tip is round_tip)
+    assert off.max() < 0.2 * np.ptp(sections[-1], axis=0).max()  # of the tip's chord
 
 
 def test_sections_by_suffix(blade, tmp_path):

@@ -28,6 +28,7 @@ FLOW = [
     "extension",
     "readers",
     "affine",
+    "roots",
     "sections",
     "planform",
     "interpolation",

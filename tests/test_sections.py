@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from bladegen.landmarks import landmark_parameters, landmarks
 from bladegen.sections import SectionSplines
-from strategies import airfoils, circle, ellipse, four_digit
+from strategies import airfoils, box, circle, ellipse, four_digit
 
 U = landmark_parameters(401)
 SPLINES = SectionSplines(U)
@@ -66,6 +66,34 @@ def test_normalising_is_exact(xy, factor):
         B, c = SPLINES.normalising(shape, None)
         curves = SPLINES.fit(shape @ B + c[:, None])
         assert_allclose(curves.chord, 1.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("thickness", [0.9, 1.1, 1.16, 1.2, 1.25, 1.5])
+def test_normalising_settles_where_noses_pass_each_other(thickness):
+    splines = SectionSplines(np.linspace(0.0, 1.0, 401))
+    points, wanted = box(401, np.linspace(-0.02, 0.02, 81)), np.full(81, thickness)
+    own = splines.fit(points).relative_thickness
+    A, c = splines.normalising(points, wanted)
+    shapes = points @ A + c[:, None]
+    curves = splines.fit(shapes)
+    assert_allclose(curves.chord, 1.0, rtol=0, atol=1e-12)
+    assert_allclose(curves.relative_thickness, wanted, rtol=0, atol=3e-12)
+    if not own.min() < thickness < own.max():  # one solution is as even as the section
+        assert_allclose(curves.leading_edge[40, 1], 0.0, atol=1e-6)
+    if thickness > own.max():  # the leading edge goes from the one to the other by and by
+        steps = np.abs(np.diff(shapes, axis=0)).max(axis=(1, 2))
+        assert steps.max() < 2.0 * np.median(steps)
+        assert curves.leading_edge[0, 1] * curves.leading_edge[-1, 1] < 0.0
+
+
+def test_noses_that_pass_each_other_leave_other_sections_as_they_are():
+    splines = SectionSplines(np.linspace(0.0, 1.0, 401))
+    oval = circle(401) * [1.0, 0.4]
+    points = np.concatenate([box(401, np.array([0.003, 0.0])), oval[None]])
+    A, c = splines.normalising(points, np.array([1.3, 1.3, 0.45]))
+    B, d = splines.normalising(points[2:], np.array([0.45]))
+    assert_allclose(A[2], B[0], rtol=0, atol=1e-15)
+    assert_allclose(c[2], d[0], rtol=0, atol=1e-15)
 
 
 def test_a_batch_equals_its_parts():

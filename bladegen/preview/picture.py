@@ -110,8 +110,11 @@ def gallery(
 
 
 def write_vtp(mesh: TriangleMesh, path: Path, *, scale: float = 1.0) -> None:
-    """Write a mesh as VTK poly data, its lengths times `scale`."""
-    save(poly(mesh, scale), path)
+    """Write a mesh as VTK poly data, lengths times `scale`, with eta and u where it has them."""
+    made = poly(mesh, scale)
+    if mesh.places is not None:
+        made["eta"], made["u"] = (np.array(column) for column in mesh.places.T)
+    save(made, path)
 
 
 def _figure(blade: Blade, scene: Scene, field: Field | None, size: tuple[int, int]) -> Any:

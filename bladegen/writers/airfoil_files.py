@@ -14,8 +14,9 @@ import numpy as np
 from bladegen.arrays import Array
 from bladegen.definition import Airfoil, BladeDefinition
 from bladegen.errors import ExportError, Finding
-from bladegen.files import folder, replacing, safe_stem
+from bladegen.files import folder, safe_stem
 from bladegen.landmarks import oriented
+from bladegen.writers.text import write_lines
 from bladegen.writers.windio import uniquely_named
 
 __all__ = ["LAYOUTS", "write_airfoil", "write_lednicer", "write_selig"]
@@ -61,8 +62,7 @@ def write_airfoil(airfoil: Airfoil, path: str | Path, *, layout: str = "selig") 
         raise ExportError(f"layout: got {layout!r}, allowed are {', '.join(LAYOUTS)}")
     title = " ".join(airfoil.name.split()) or "airfoil"
     lines = [title, *LAYOUTS[layout](oriented(airfoil.coordinates))]
-    with replacing(Path(path)) as temporary:
-        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_lines(Path(path), lines)
 
 
 def _write(definition: BladeDefinition, path: Path, layout: str) -> tuple[Finding, ...]:

@@ -34,6 +34,7 @@ __all__ = [
 
 MIN_AIRFOIL_POINTS = 3
 SMALLEST_STEP = 1e-9  # of the span from station to station: a tenth of a micrometre
+SMALLEST_SIZE = 1e-6  # m of a chord, chords of a thickness; a tip may run out to a point, all but
 SMALLEST_RISE = 1e-9  # m, of the axis' z from one grid point to the next
 STEEPEST = 1e15  # change over a whole span; steeper curves overflow
 THICKNESS_RIPPLE = 1e-4  # published curves ripple by 1e-5 about the thinnest airfoil (DTU 10 MW)
@@ -293,12 +294,12 @@ class BladeDefinition:
             )
 
     def _require_positive(self, field: str, quantity: Distribution, unit: str) -> None:
-        bad = np.flatnonzero(quantity.values <= 0)
+        bad = np.flatnonzero(quantity.values < SMALLEST_SIZE)
         if bad.size:
             i = int(bad[0])
             raise DefinitionError(
-                f"{self.name}: {field} must be positive, got {quantity.values[i]:g} {unit} "
-                f"at eta = {quantity.grid[i]:g} (entry {i})"
+                f"{self.name}: {field} must be positive, at least {SMALLEST_SIZE:g} {unit}, got "
+                f"{quantity.values[i]:g} at eta = {quantity.grid[i]:g} (entry {i})"
             )
 
     def offset_y(self, eta: ArrayLike) -> Array:

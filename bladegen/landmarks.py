@@ -124,7 +124,9 @@ class Contour:
         t = start + (end - start) * (target - arc[segment]) / (arc[segment + 1] - arc[segment])
         for _ in range(4):  # Newton; the parameter is nearly arc length, so two steps would do
             excess = arc[segment] + _lengths(self.spline, start, t) - target
-            t = np.clip(t - excess / np.hypot(*self.spline(t, 1).T), start, end)
+            speed = np.hypot(*self.spline(t, 1).T)  # 0 where a contour turns back on itself
+            step = np.divide(excess, speed, out=np.zeros_like(excess), where=speed > 0)
+            t = np.clip(t - step, start, end)
         return readonly(self.spline(t))
 
 

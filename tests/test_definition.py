@@ -219,9 +219,13 @@ LINE = Distribution.constant(0.0)
         ({"section_offset_y": LINE}, "exactly one of section_offset_y and pitch_axis"),
         (
             {"chord": Distribution([0.0, 0.5, 1.0], [1.0, -2.0, 1.0])},
-            r"chord must be positive, got -2 m at eta = 0.5 \(entry 1\)",
+            r"chord must be positive, at least 1e-06 m, got -2 at eta = 0.5 \(entry 1\)",
         ),
-        ({"relative_thickness": LINE}, "relative_thickness must be positive, got 0 of chord"),
+        ({"chord": Distribution([0.0, 1.0], [2.0, 5e-324])}, "at least 1e-06 m, got 4.94066e-324"),
+        (
+            {"relative_thickness": LINE},
+            "relative_thickness must be positive, at least 1e-06 of chord, got 0",
+        ),
         (
             {"axis": ReferenceAxis(LINE, LINE, Distribution([0.0, 0.4, 1.0], [0.0, 5.0, 4.0]))},
             "z must increase from root to tip, got 5 then 4 m at eta = 0.4 and 1",

@@ -141,3 +141,11 @@ def test_unusable_airfoils_are_refused():
     gaping = np.array([[1.0, 2.0], [0.8, 1.0], [0.5, 0.0], [0.8, -1.0], [1.0, -2.0]])
     with pytest.raises(GeometryError, match="no leading edge"):
         lm.landmarks(gaping, 11)
+
+
+def test_a_contour_that_turns_back_on_itself_has_landmarks():
+    spline = lm._spline(np.array([[1.0, 0.0], [0.99, 0.0], [1.0, 0.0]]))
+    assert np.hypot(*spline(spline.x[1], 1)) == 0.0
+    points = lm.Contour(spline, spline.x[1]).landmarks(lm.landmark_parameters(41))
+    assert_allclose(points[20], [0.99, 0.0], atol=1e-12)
+    assert np.isfinite(points).all()

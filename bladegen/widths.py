@@ -79,8 +79,9 @@ class EdgeWidths:
 
         Widths hold once the sections are brought to unit chord and to `thickness` (k,).
         """
-        A, c = self.splines.normalising(landmarks, thickness)
-        curves = self.splines.fit(affine.restore(landmarks, A, c))
+        curves = self.splines.fit(landmarks)
+        A, c = curves.normalising(thickness)
+        curves = curves.mapped(A, c)
         wedges, back = Wedges.to(curves, self.over(q)), np.linalg.inv(A)
         return lambda points: points + wedges(affine.restore(points, A, c)) @ back
 

@@ -23,7 +23,7 @@ from bladegen.sizes import Numbers, Section, combine, sizing
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 2  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 3  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 

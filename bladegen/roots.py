@@ -38,44 +38,41 @@ def falling(
     return u
 
 
-def bracketed(f: Callable[[Array, Indices], Array], tolerance: float, between: Mask) -> Array:
-    """Find where k functions pass zero between 0 and 1, by false position (Illinois).
-
-    One that is positive at 0 falls to the root, and one that is positive at both ends has it at
-    1.  Others have theirs at 0, but where it may be `between` that and another, rising, at 1.
+def bracketed(
+    f: Callable[[Array, Indices], Array], count: int, tolerance: float
+) -> tuple[Array, Mask]:
+    """Find where functions fall through zero between 0 and 1, by false position (Illinois).
 
     Parameters
     ----------
     f : callable
         Returns the values of the functions `rows` (m,) at places (m,).
+    count : int
+        How many functions there are.
     tolerance : float
         Of the values.
-    between : (k,) array of bool
-        Where a root is sought that functions rise to, unless only one end is a root.
 
     Returns
     -------
-    (k,) array
-        Places.
+    place : (count,) array
+        0 where a function is not positive there, else 1 where it is not negative there.
+    either : (count,) array of bool
+        Where both are so.
     """
-    rows = np.arange(len(between))
-    low, high = np.zeros(len(rows)), np.ones(len(rows))
+    rows = np.arange(count)
+    low, high = np.zeros(count), np.ones(count)
     above, below = f(low, rows), f(high, rows)
-    rising = between & (above <= tolerance) & (below >= -tolerance)
-    sign = np.where(rising, -1.0, 1.0)
-    above = np.where(rising, np.maximum(-above, tolerance), above)
-    below = np.where(rising, np.minimum(-below, -tolerance), below)
-    within = rising | ((above > tolerance) & (below < -tolerance))
-    place = np.where((above > tolerance) & ~within, 1.0, 0.0)
-    rows, step = rows[within], high.copy()
-    kept = np.zeros(len(low))  # the end that the last place left: 1 the upper, -1 the lower
+    first, last = ~(above > tolerance), ~(below < -tolerance)
+    place, step = np.where(last & ~first, 1.0, 0.0), high.copy()
+    rows = rows[~first & ~last]
+    kept = np.zeros(count)  # the end that the last place left: 1 the upper, -1 the lower
     for _ in range(ITERATIONS):
         if not rows.size:
             break
         a, b = above[rows], below[rows]
         at = low[rows] + (high[rows] - low[rows]) * (a / (a - b))
         step[rows], place[rows] = at - place[rows], at
-        value = sign[rows] * f(at, rows)
+        value = f(at, rows)
         rises = value > 0.0
         up, down = rows[rises], rows[~rises]
         low[up], above[up] = at[rises], value[rises]
@@ -84,4 +81,4 @@ def bracketed(f: Callable[[Array, Indices], Array], tolerance: float, between: M
         above[down] *= np.where(kept[down] < 0.0, 0.5, 1.0)
         kept[up], kept[down] = 1.0, -1.0
         rows = rows[(np.abs(value) > tolerance) & (np.abs(step[rows]) > ROUNDING)]
-    return place
+    return place, first & last

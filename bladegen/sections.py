@@ -15,14 +15,14 @@ import numpy as np
 
 from bladegen import affine
 from bladegen.arrays import Array, Indices, Mask
+from bladegen.resizing import RIVAL, resizing, stretching
 from bladegen.roots import ITERATIONS, PARAMETER_TOLERANCE, bracketed, falling
 
-__all__ = ["SectionCurves", "SectionSplines", "resizing"]
+__all__ = ["SectionCurves", "SectionSplines"]
 
 SETTLED = 1e-13  # change of a stretch that ends its iteration
 EVEN = 1e-11  # of `AMBIGUOUS`; differences of distances that are rounding
 SAME_NOSE = 3  # landmarks; nearer peaks are one nose
-RIVAL = 3e-2  # of the squared distance; lower peaks at landmarks no stretch makes the highest
 AMBIGUOUS = 2e-5  # of a chord; noses whose distances differ by less share the leading edge
 WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
 
@@ -86,58 +86,6 @@ class SectionSplines:
         return self.fit(points).normalising(relative_thickness)
 
 
-def resizing(
-    noses: Array,
-    leading_edge: Array,
-    trailing_edge: Array,
-    thickness: Array | None,
-    relative_thickness: Array | None,
-) -> tuple[Array, Array, Mask]:
-    """Return the maps of GL2 that bring measured sections to unit chord and thickness.
-
-    Parameters
-    ----------
-    noses : (2, ..., 2) array
-        The points that may be farthest from the trailing-edge midpoint.
-    leading_edge, trailing_edge : (..., 2) arrays
-        The ends of the chord line.
-    thickness, relative_thickness : (...) arrays, optional
-        The thickness it has, and the thickness over chord it shall have; None leaves it.
-
-    Returns
-    -------
-    A, c : (..., 2, 2), (..., 2) arrays
-        ``points @ A + c``; leading edge and trailing-edge midpoint stay but for the scaling.
-    passed : (...) array of bool
-        Where another nose may share the leading edge of the result or be it, so that the map is
-        not the one sought.
-    """
-    line = trailing_edge - leading_edge
-    length = np.linalg.norm(line, axis=-1)
-    along = line / length[..., None]
-    normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
-    far = noses - leading_edge
-    x, y = np.sum(far * along, axis=-1), np.sum(far * normal, axis=-1)
-    stretch, reach = np.ones_like(length), np.hypot(length - x, y)
-    if thickness is not None and relative_thickness is not None:
-        for _ in range(3):  # noses beside the chord line move with the stretch
-            stretch = relative_thickness * reach.max(axis=0) / thickness
-            reach = np.hypot(length - x, stretch * y)
-    # the farthest point stays the farthest under the stretch but where another nose passes it,
-    # whose peak moves along the contour meanwhile and gains by that
-    passed = reach[0] - reach[1] < RIVAL * length
-    passed &= np.any(noses[0] != noses[1], axis=-1)
-    return *_stretching(leading_edge, normal, stretch, reach), passed
-
-
-def _stretching(start: Array, normal: Array, stretch: Array, reach: Array) -> tuple[Array, Array]:
-    """Return the maps that stretch along a normal from a point, then bring noses to unit chord."""
-    lift = (stretch - 1.0)[..., None, None] * normal[..., :, None] * normal[..., None, :]
-    scale = 1.0 / reach.max(axis=0)
-    shift = -(start[..., None, :] @ lift)[..., 0, :] * scale[..., None]
-    return scale[..., None, None] * (np.eye(2) + lift), shift
-
-
 @dataclass(frozen=True, eq=False)
 class SectionCurves:
     """Sections as splines: landmarks and slopes (k, n, 2) at the parameters u (n,)."""
@@ -148,6 +96,19 @@ class SectionCurves:
 
     def normalising(self, relative_thickness: Array | None) -> tuple[Array, Array]:
         """Return the maps of `SectionSplines.normalising`."""
+        A, c, either = self._step(relative_thickness)
+        rows = np.flatnonzero(either)
+        for _ in range(ITERATIONS):  # away from noses that agree
+            if relative_thickness is None or not rows.size:
+                break
+            moved = self.take(rows).mapped(A[rows], c[rows])
+            B, d, either = moved._step(relative_thickness[rows])
+            A[rows], c[rows] = A[rows] @ B, (c[rows][:, None] @ B)[:, 0] + d
+            rows = rows[either]
+        return A, c
+
+    def _step(self, relative_thickness: Array | None) -> tuple[Array, Array, Mask]:
+        """Return the maps of `normalising`, exact but where either nose may lead, and where."""
         A, c, passed = resizing(
             np.stack(self._noses),
             self.leading_edge,
@@ -155,12 +116,12 @@ class SectionCurves:
             None if relative_thickness is None else self.thickness,
             relative_thickness,
         )
+        either = np.zeros(len(self.points), dtype=bool)
         rows = np.flatnonzero(self.has_rivals | passed)
         if relative_thickness is not None and rows.size:
-            B, d, place = self.take(rows).shared(relative_thickness[rows])
-            shared = self.has_rivals[rows] | (place > 0.0)
-            A[rows[shared]], c[rows[shared]] = B[shared], d[shared]
-        return A, c
+            B, d, moved, either[rows] = self.take(rows).shared(relative_thickness[rows])
+            A[rows[moved]], c[rows[moved]] = B[moved], d[moved]
+        return A, c, either
 
     def mapped(self, A: Array, c: Array) -> "SectionCurves":
         """Return the sections ``points @ A + c``, for maps (k, 2, 2) and (k, 2)."""
@@ -274,15 +235,15 @@ class SectionCurves:
         axes = np.stack([along, np.stack([-along[:, 1], along[:, 0]], axis=-1)], axis=-1)
         return SectionCurves(self.u, self.points @ axes, self.slopes @ axes)
 
-    def shared(self, relative_thickness: Array) -> tuple[Array, Array, Array]:
-        """Return the maps of `resizing` where two noses may share the leading edge, and its place.
+    def shared(self, relative_thickness: Array) -> tuple[Array, Array, Mask, Mask]:
+        """Return the maps of `resizing` where two noses may share the leading edge.
 
-        Places (k,) are 0 at the nose that is the farthest before, 1 at the other.
+        Returned besides is where they differ from those of the present leading edge, and where
+        either nose may lead though they share the edge now.
 
         The stretch moves noses away from the chord line, or towards it, so that their distances
         depend on where the line runs between them, and it runs where their distances say: its
-        place is found by the signs of the difference.  A section that grows thinner may be led by
-        either nose: by the one that was farther, or by both if none was.
+        place is found by the signs of the difference.
         """
         noses = np.stack(self._noses)
 
@@ -295,10 +256,12 @@ class SectionCurves:
             some = self.take(rows), noses[:, rows], relative_thickness[rows]
             return SectionCurves._stretched(*some, lead(place, rows))[-1]
 
-        place = bracketed(excess, EVEN, self.has_rivals)
+        place, either = bracketed(excess, len(self.points), EVEN)
+        either &= self.has_rivals
         start = lead(place, np.arange(len(place)))
         normal, stretch, reach, _ = self._stretched(noses, relative_thickness, start)
-        return *_stretching(start, normal, stretch, reach), place
+        moved = ~either & (self.has_rivals | (place > 0.0))
+        return *stretching(start, normal, stretch, reach), moved, either
 
     def _stretched(
         self, noses: Array, relative_thickness: Array, lead: Array

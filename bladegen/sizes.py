@@ -8,16 +8,20 @@ lie opposite.  Splines are linear in features (`batch`), and so are their slopes
 from math import asin, copysign, sin, sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from bladegen.arrays import Array
 from bladegen.compiled import compiled
+from bladegen.resizing import RIVAL
 from bladegen.roots import ITERATIONS, PARAMETER_TOLERANCE, ROUNDING
-from bladegen.sections import AMBIGUOUS, EVEN, RIVAL, SAME_NOSE, SETTLED
+from bladegen.sections import AMBIGUOUS, EVEN, SAME_NOSE, SETTLED
 
 __all__ = ["Numbers", "Section", "combine", "sizing"]
 
 ACROSS = 8  # Newton steps to the point at the same x on the other side; two are usual
 REACH = 4.0  # landmarks that one step towards the thickest place may pass
 Numbers = tuple[float, ...]
+Room = tuple[Array, Array, Array]  # for coefficients (F, 2), points (2, n), and n numbers
 
 
 class Section(NamedTuple):
@@ -54,11 +58,45 @@ def sizing(
 
     Maps are (a, b, c, d, e, f): x' = a x + c y + e and y' = b x + d y + f.
     """
-    total, own, rivals, passed = resizing(s, target, work)
-    if rivals or passed:
-        other, place = shared(s, values, target, rivals, now, moved, work)
-        total = other if rivals or place > 0.0 else total
+    total, own, either = step(s, values, target, now, moved, work)
+    c, points = now, moved
+    if either:
+        c, points = np.empty_like(now), np.empty_like(moved)
+    for _ in range(ITERATIONS):  # away from noses that agree
+        if not either:
+            break
+        for f in range(len(c)):
+            c[f, 0] = s.c[f, 0] * total[0] + s.c[f, 1] * total[2]
+            c[f, 1] = s.c[f, 0] * total[1] + s.c[f, 1] * total[3]
+        c[-1, 0] += total[4]
+        c[-1, 1] += total[5]
+        combine(values, c, points)
+        here = Section(s.u, s.slopes, c, points)
+        more, _, either = step(here, values, target, now, moved, work)
+        total = (
+            total[0] * more[0] + total[1] * more[2],
+            total[0] * more[1] + total[1] * more[3],
+            total[2] * more[0] + total[3] * more[2],
+            total[2] * more[1] + total[3] * more[3],
+            total[4] * more[0] + total[5] * more[2] + more[4],
+            total[4] * more[1] + total[5] * more[3] + more[5],
+        )
     return total, own
+
+
+@compiled
+def step(
+    s: Section, values: Array, target: float, now: Array, moved: Array, work: Array
+) -> tuple[Numbers, float, bool]:
+    """Return the map, exact unless either nose may lead, the thickness, and whether that is so."""
+    total, own, rivals, passed = resizing(s, target, work)
+    either = False
+    if rivals or passed:
+        other, place, either = shared(s, values, target, now, moved, work)
+        either = either and rivals
+        if not either and (rivals or place > 0.0):
+            total = other
+    return total, own, either
 
 
 @compiled
@@ -102,36 +140,21 @@ def stretching(start: Numbers, along: Numbers, stretch: float, reach: float) -> 
 
 @compiled
 def shared(
-    s: Section,
-    values: Array,
-    target: float,
-    rivals: bool,
-    now: Array,
-    moved: Array,
-    work: Array,
-) -> tuple[Numbers, float]:
-    """Return the map where noses share the edge (`SectionCurves.shared`), and their share.
-
-    The share is found as by `roots.bracketed`.
-    """
-    both = noses(s, work)
-    first, above = stretched(s, values, both, 0.0, target, now, moved, work)
-    if not above > EVEN and not rivals:
-        return first, 0.0
-    last, below = stretched(s, values, both, 1.0, target, now, moved, work)
-    sign = 1.0
-    if rivals and above <= EVEN and below >= -EVEN:
-        sign, above, below = -1.0, max(-above, EVEN), min(-below, -EVEN)
-    elif not above > EVEN:
-        return first, 0.0
-    elif not below < -EVEN:
-        return last, 1.0
+    s: Section, values: Array, target: float, now: Array, moved: Array, work: Array
+) -> tuple[Numbers, float, bool]:
+    """Return the map where noses share the edge, their share, and if 0 and 1 are shares, too."""
+    both, room = noses(s, work), (now, moved, work)
+    first, above = stretched(s, values, both, 0.0, target, room)
+    last, below = stretched(s, values, both, 1.0, target, room)
+    if not above > EVEN:
+        return first, 0.0, not below < -EVEN
+    if not below < -EVEN:
+        return last, 1.0, False
     total = first
     place, low, high, kept = 0.0, 0.0, 1.0, 0
     for _ in range(ITERATIONS):
         before, place = place, low + (high - low) * (above / (above - below))
-        total, value = stretched(s, values, both, place, target, now, moved, work)
-        value *= sign
+        total, value = stretched(s, values, both, place, target, room)
         if value > 0.0:
             low, above = place, value
             below *= 0.5 if kept == 1 else 1.0
@@ -142,19 +165,12 @@ def shared(
             kept = -1
         if abs(value) <= EVEN or abs(place - before) <= ROUNDING:
             break
-    return total, place
+    return total, place, False
 
 
 @compiled
 def stretched(
-    s: Section,
-    values: Array,
-    both: tuple[Numbers, ...],
-    place: float,
-    target: float,
-    now: Array,
-    moved: Array,
-    work: Array,
+    s: Section, values: Array, both: tuple[Numbers, ...], place: float, target: float, room: Room
 ) -> tuple[Numbers, float]:
     """Return the map that stretches normal to a chord line between noses, and its excess.
 
@@ -162,6 +178,7 @@ def stretched(
     that of `SectionCurves._stretched`.
     """
     one, two, edge = both
+    now, moved, work = room
     lead = between(one, two, place)
     length = distance(lead, edge)
     ax, ay = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length

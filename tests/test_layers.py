@@ -29,6 +29,7 @@ FLOW = [
     "readers",
     "affine",
     "roots",
+    "resizing",
     "sections",
     "planform",
     "interpolation",

@@ -76,7 +76,10 @@ def build(
         If a format is not known, the folder cannot be written, or another run writes this blade
         there.
     """
-    with alone(folder(target), safe_stem(blade.name)):
+    from threadpoolctl import threadpool_limits
+
+    # one thread: the same sums in the same order, whatever the machine
+    with alone(folder(target), safe_stem(blade.name)), threadpool_limits(1):
         return _built(blade, target, formats, options, rotor, progress)
 
 

@@ -174,14 +174,16 @@ class Distribution:
         return np.where(inside == eta, result, 0.0) if nu else result
 
 
-def united(*grids: ArrayLike) -> Array:
-    """Return the points of several grids in one, of points nearer than is allowed only the first.
+def united(*grids: ArrayLike, apart: float = SMALLEST_STEP) -> Array:
+    """Return the points of several grids in one, of points nearer than `apart` only the first.
+
+    The last point of all stays.
 
     >>> united([0.0, 0.1 + 0.2, 1.0], [0.3, 0.5]).tolist()
     [0.0, 0.3, 0.5, 1.0]
     """
     merged = np.unique(np.concatenate([np.asarray(grid, dtype=np.float64) for grid in grids]))
-    kept: Array = merged[np.insert(np.diff(merged) >= SMALLEST_STEP, 0, True)]
+    kept: Array = merged[np.insert(np.diff(merged) >= apart, 0, True)]
     kept[-1] = merged[-1]
     return kept
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.blade import Blade
-from bladegen.definition import BladeDefinition, Distribution, pchip
+from bladegen.definition import BladeDefinition, Distribution, pchip, united
 
 __all__ = ["MOST_NODES", "TOLERANCE", "common_grid", "shape_grid"]
 
@@ -99,12 +99,7 @@ def _united(
     """Return all grid points and stations, the ends among them, near doubles left out."""
     grids = [quantity.grid for quantity, _ in quantities]
     stations = [station.eta for station in definition.stations]
-    grid = np.unique(np.concatenate([[0.0, 1.0], stations, *grids]))
-    keep = np.concatenate([[True], np.diff(grid) > CLOSEST])
-    if not keep[-1]:
-        keep[-2:] = False, True
-    united: Array = grid[keep]
-    return united
+    return united([0.0, 1.0], stations, *grids, apart=CLOSEST)
 
 
 def _quantities(definition: BladeDefinition) -> list[tuple[Distribution, Distribution]]:

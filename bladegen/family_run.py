@@ -17,7 +17,7 @@ import numpy as np
 from bladegen import exporters, polygons
 from bladegen.arrays import Array, Indices
 from bladegen.blade import Blade
-from bladegen.errors import ExportError, FamilyError, ToleranceError
+from bladegen.errors import ExportError, FamilyError, PerturbationError, ToleranceError
 from bladegen.families import BLOCK, Block, Family
 from bladegen.family_files import FLOAT_TYPES, FamilyFolder, sections_digest
 from bladegen.files import digest_of, folder
@@ -256,7 +256,8 @@ def _exported(order: Order, block: Block, suffix: str) -> dict[str, Any]:
             path = order.place.blades / f"{order.family.name(int(place))}{suffix}"
             problem = _export(order, order.family.named(block, int(place)), path)
             made = exporters.aside(path) if problem else path
-            name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
+            if made.exists():
+                name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
         names.append(name)
         digests.append(digest)
         problems.append(problem)
@@ -265,11 +266,11 @@ def _exported(order: Order, block: Block, suffix: str) -> dict[str, Any]:
 
 
 def _export(order: Order, blade: Blade, path: Path) -> str:
-    """Write one file; return what is wrong with it, kept beside its name, or ""."""
+    """Write one file; return what is wrong, a file out of tolerance kept aside, or ""."""
     options = replace(order.options, timestamp=TIMESTAMP, spans=order.spans)
     try:
-        exporters.write(exporters.Products(blade, options), path)
-    except ToleranceError as error:
+        exporters.write(exporters.Products(blade.require_sound(), options), path)
+    except (PerturbationError, ToleranceError) as error:
         return str(error).replace(f"{path.parent}/", "")
     return ""
 

@@ -28,6 +28,8 @@ from bladegen.sections import SectionSplines
 __all__ = ["Perturbable"]
 
 SOUND_SPANS = 60  # spans at which a perturbed blade is tested
+FOLDING = 0.1  # of a step's direction; sections that keep less of one are about to fold
+FINER = 32  # times, between spans of which one is about to fold
 LOST_THICKNESS = 0.2  # of the thickness before, which a deformation must leave
 
 
@@ -96,8 +98,7 @@ class Perturbable:
             allow_extrapolation=allow_extrapolation,
             name=name,
         )
-        variant._require_sound()
-        return variant
+        return variant.require_sound()
 
     def untested(
         self,
@@ -133,22 +134,62 @@ class Perturbable:
             changes=(*self.changes, asked | {"window": [window.start, window.end]}),
         )
 
-    def _require_sound(self) -> None:
-        """Raise if a section crosses itself or has lost its thickness."""
+    def require_sound(self) -> Self:
+        """Return the blade, or raise if a section crosses itself or has lost its thickness.
+
+        Tested are the stations and `SOUND_SPANS` others, and many more between these where
+        sections are about to fold: a nose may curl up on a thousandth of the span.
+
+        Raises
+        ------
+        PerturbationError
+            If a section does.
+        """
         eta = np.union1d(np.linspace(0.0, 1.0, SOUND_SPANS), self.eta)
+        folding = np.flatnonzero(self._tested(eta) < FOLDING)
+        cells = np.union1d(folding[folding > 0] - 1, folding[folding < len(eta) - 1])
+        if cells.size:
+            between = np.linspace(eta[cells], eta[cells + 1], FINER, endpoint=False)[1:]
+            self._tested(np.sort(between.reshape(-1)))
+        return self
+
+    def _tested(self, eta: Array) -> Array:
+        """Raise if a section at spans (k,) is unsound; return how far they are from folding, (k,).
+
+        That is the least share of its direction that a step along the contour or across the
+        section keeps of what it was: 1 unchanged, 0 turned by a right angle or shrunk to nothing.
+        """
         plain, X, M, b = self.shapes(eta)
-        points = affine.restore(X, M, b)
+        points, given = affine.restore(X, M, b), affine.restore(plain, M, b)
         crossing = crossing_sections(points)
         own = self.splines.fit(points).relative_thickness
-        before = self.splines.fit(affine.restore(plain, M, b)).relative_thickness
+        before = self.splines.fit(given).relative_thickness
         thin = np.flatnonzero(~(own > LOST_THICKNESS * before))
         for places, fault in ((crossing, "crosses itself"), (thin, "loses its thickness")):
             if len(places):
                 place = float(eta[places[0]])
                 near = self.definition.stations[int(np.argmin(np.abs(self.eta - place)))]
-                asked = {k: v for k, v in self.changes[-1].items() if k != "window"}
-                given = ", ".join(f"{key} = {value}" for key, value in asked.items())
+                asked = self.changes[-1] if self.changes else {}
+                said = ", ".join(f"{k} = {v}" for k, v in asked.items() if k != "window")
                 raise PerturbationError(
                     f"{self.definition.name}: the section at eta = {place:.4f} (near "
-                    f"{near.airfoil.name} at {near.eta:.4f}) {fault} with {given}"
+                    f"{near.airfoil.name} at {near.eta:.4f}) {fault}{said and ' with ' + said}"
                 )
+        return np.minimum(
+            _kept(np.diff(points, axis=1), np.diff(given, axis=1)),
+            _kept(_across(points), _across(given)),
+        )
+
+
+def _across(points: Array) -> Array:
+    """Return the steps from the pressure to the suction side of sections (k, n, 2)."""
+    half = points.shape[1] // 2
+    return points[:, 1:half] - points[:, -2:half:-1]
+
+
+def _kept(steps: Array, before: Array) -> Array:
+    """Return the least share that steps (k, m, 2) keep of steps before, (k,)."""
+    along, length = np.sum(steps * before, axis=-1), np.sum(before * before, axis=-1)
+    shares = np.divide(along, length, out=np.ones_like(along), where=length > 0.0)
+    least: Array = shares.min(axis=1)
+    return least

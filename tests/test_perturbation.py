@@ -8,8 +8,10 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen import affine, grassmann
+from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange
 from bladegen.errors import PerturbationError
+from bladegen.perturbation import SOUND_SPANS
 from strategies import definitions
 
 SPACE = bg.ShapeSpace.bundled()
@@ -168,6 +170,30 @@ def test_bounds_are_kept_unless_extrapolation_is_asked_for(blades):
 def test_sections_that_cross_are_named_with_station_and_parameter(blades):
     with pytest.raises(PerturbationError, match=r"eta = 0\.\d+ \(near .* at .*\) .* with pga = "):
         blades["nrel5mw"].perturbed(SPACE, [1.2, 0.9, 0.5, 0.7], allow_extrapolation=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "t", "thickness", "camber", "where"),
+    [
+        ("dtu10mw", [-0.16215, -0.1593, -0.02158, -0.0457], 1.035, 0.9987, (0.172, 0.185)),
+        ("iea15mw", [-0.09809, -0.17652, -0.00895, -0.04416], 1.128, 0.9751, (0.125, 0.132)),
+    ],
+)
+def test_noses_that_curl_up_between_the_spans_first_tested_are_found(
+    blades, name, t, thickness, camber, where
+):
+    change = AffineChange(thickness=thickness, camber=camber)
+    variant = blades[name].untested(SPACE, t, change, allow_extrapolation=True)
+    first = np.union1d(np.linspace(0.0, 1.0, SOUND_SPANS), variant.eta)
+    assert not crossing_sections(variant.profiles(first))
+    assert crossing_sections(variant.profiles(np.linspace(*where, 20)))
+    with pytest.raises(PerturbationError, match=r"eta = 0\.1\d+ .* crosses itself with "):
+        variant.require_sound()
+
+
+def test_a_blade_as_it_is_defined_is_sound(blades):
+    for blade in blades.values():
+        assert blade.require_sound() is blade
 
 
 def test_deformations_that_eat_the_thickness_are_named(blades, monkeypatch):

@@ -25,6 +25,7 @@ __all__ = [
     "Solid",
     "area",
     "is_valid",
+    "quick_volume",
     "solid",
     "volume",
 ]
@@ -34,7 +35,7 @@ logger = logging.getLogger(__name__)
 MILLIMETRES = 1000.0
 SEWING = 1e-4  # mm; edges of one net meet to rounding, so this is slack, not repair
 VOLUME_TOLERANCE = 1e-6  # relative; OCCT's default quadrature is off by 3e-4 on these faces
-COARSE_VOLUME = 1e-3  # the same rule, a hundred times faster: to compare a shape with its copy
+QUICK_VOLUME = 1e-3  # relative, as asked of OCCT
 DEFAULT_TOLERANCE = 0.3e-3  # m
 
 
@@ -146,17 +147,31 @@ def solid(
     return Solid(shape, named, net, deviation, tip_volume(net, tip), blade.name)
 
 
-def volume(shape: Any, accuracy: float = VOLUME_TOLERANCE) -> float:
-    """Return a shape's volume [mm3], by OCCT's adaptive quadrature.
+def volume(shape: Any) -> float:
+    """Return a shape's volume [mm3], by OCCT's Gauss-Kronrod quadrature of every knot span.
 
-    Its own estimate of `accuracy` (relative) is optimistic: at 1e-6 the volume of a blade is
-    off by up to 1e-5.  `Solid.volume` is exact.
+    Its own estimate of the accuracy is optimistic: the volume of a blade is off by up to 1e-5.
+    `Solid.volume` is exact.
     """
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
     properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties, accuracy, False, False)
+    options = {"OnlyClosed": False, "IsUseSpan": True}
+    BRepGProp.VolumePropertiesGK_s(shape, properties, VOLUME_TOLERANCE, **options)
+    return float(properties.Mass())
+
+
+def quick_volume(shape: Any) -> float:
+    """Return a shape's volume [mm3] a hundred times faster: to compare a shape with its copy.
+
+    Twisted blades are off by up to a tenth, the same for the same shape.
+    """
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties, QUICK_VOLUME, False, False)
     return float(properties.Mass())
 
 

@@ -90,13 +90,13 @@ def solid_figures(shape: Any, *, quick: bool = False) -> dict[str, Any]:
     bounds = np.array(box.Get() if not box.IsVoid() else (0.0,) * 6) / cad.MILLIMETRES
     shells = members["shells"]
     closed = bool(shells) and all(BRep_Tool.IsClosed_s(shell) for shell in shells)
-    accuracy = cad.COARSE_VOLUME if quick else cad.VOLUME_TOLERANCE
+    volume = cad.quick_volume if quick else cad.volume
     return {
         **{key: len(found) for key, found in members.items()},
         "valid": cad.is_valid(shape),
         "closed": closed,
         "one_solid": len(members["solids"]) == 1,
-        "volume_m3": cad.volume(shape, accuracy) / cad.MILLIMETRES**3,
+        "volume_m3": volume(shape) / cad.MILLIMETRES**3,
         "area_m2": cad.area(shape) / cad.MILLIMETRES**2,
         "bounds_m": _bounds(bounds.reshape(2, 3)),
     }

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.arrays import Array
+from bladegen.definition import pchip
 from bladegen.errors import Finding
 
 __all__ = ["Line", "axis_finding", "axis_of_line", "curve_length", "line_of_axis", "slope_degrees"]
@@ -113,12 +114,10 @@ def curve_length(x: Array, y: Array, z: Array) -> tuple[Array, Array]:
     z, length : (16 m - 15,) arrays
         Places along z, the given ones among them, and the curve's length up to there.
     """
-    from scipy.interpolate import PchipInterpolator
-
     steps = np.arange(1, LENGTH_STEPS + 1) / LENGTH_STEPS
     between = z[:-1, None] + np.diff(z)[:, None] * steps
     between[:, -1] = z[1:]
     fine = np.concatenate([z[:1], between.ravel()])
-    pieces = [np.diff(PchipInterpolator(z, values)(fine)) for values in (x, y)]
+    pieces = [np.diff(pchip(z, values)(fine)) for values in (x, y)]
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(np.hypot(*pieces), np.diff(fine)))])
     return fine, lengths

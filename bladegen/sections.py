@@ -15,6 +15,7 @@ import numpy as np
 
 from bladegen import affine
 from bladegen.arrays import Array, Indices, Mask
+from bladegen.errors import GeometryError
 from bladegen.resizing import RIVAL, resizing, stretching
 from bladegen.roots import ITERATIONS, PARAMETER_TOLERANCE, bracketed, falling
 
@@ -109,11 +110,16 @@ class SectionCurves:
 
     def _step(self, relative_thickness: Array | None) -> tuple[Array, Array, Mask]:
         """Return the maps of `normalising`, exact but where either nose may lead, and where."""
+        thickness = None if relative_thickness is None else self.thickness
+        if thickness is not None and not bool(np.all(thickness > 0.0)):
+            raise GeometryError(
+                "sections: one has no thickness; do sides of neighbouring airfoils change places?"
+            )
         A, c, passed = resizing(
             np.stack(self._noses),
             self.leading_edge,
             self.trailing_edge,
-            None if relative_thickness is None else self.thickness,
+            thickness,
             relative_thickness,
         )
         either = np.zeros(len(self.points), dtype=bool)
@@ -322,15 +328,14 @@ class SectionCurves:
         middle = len(self.u) // 2
         reach = max(0, min(WINDOW, (middle - 3) // 2))
         paired = self.points[:, :middle, 1] - self.points[:, :middle:-1, 1]
-        best = np.argmax(paired, axis=1)
+        best, rows = np.argmax(paired, axis=1), np.arange(len(paired))
         for _ in range(middle):
-            best = np.clip(best, reach + 1, max(reach + 1, middle - reach - 2))
-            window = best[:, None] + np.arange(-reach, reach + 1)
-            heights = self._gap(self.u[window], 1.0 - self.u[window])[0]
-            found = window[np.arange(len(best)), np.argmax(heights, axis=1)]
-            moved = np.abs(found - best) == reach
-            best = found
-            if not moved.any():
+            at = np.clip(best[rows], reach + 1, max(reach + 1, middle - reach - 2))
+            window = at[:, None] + np.arange(-reach, reach + 1)
+            heights = self.take(rows)._gap(self.u[window], 1.0 - self.u[window])[0]
+            best[rows] = found = window[np.arange(len(rows)), np.argmax(heights, axis=1)]
+            rows = rows[(np.abs(found - at) == reach) & (found != at)]
+            if not rows.size:
                 break
 
         height, opposite = np.empty(0), 1.0 - self.u[best]

@@ -176,6 +176,12 @@ def test_axis_and_line_are_each_other_s_way_back():
     assert_allclose(back.offset, offset, rtol=0, atol=1e-14)
 
 
+def test_a_line_with_denormal_steps_has_a_length():
+    z = np.linspace(0.0, 2.0, 5)
+    _, length = curve_length(np.array([0.0, 5e-324, 1e-323, 0.0, 0.0]), np.zeros(5), z)
+    assert_allclose(length[-1], 2.0, rtol=1e-12)
+
+
 def test_the_length_of_a_curve_is_that_of_a_circle():
     z = np.linspace(0.0, 1.0, 41)
     spans, length = curve_length(2.0 - np.sqrt(4.0 - z**2), np.zeros(41), z)

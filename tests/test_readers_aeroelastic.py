@@ -24,6 +24,7 @@ def edit(path: Path, old: str, new: str, count: int = 1) -> Path:
     [
         ("BlSwpAC", "BlSwp", "columns: BlSwpAC missing"),
         ("50 NumBlNds", "some NumBlNds", "NumBlNds: got 'some', allowed are whole numbers"),
+        ("50 NumBlNds", "nan NumBlNds", "NumBlNds: got 'nan', allowed are whole numbers"),
         ("50 NumBlNds", "60 NumBlNds", "line 57: must be row 51 of the 60"),
         ("5.208839941579524e+00", "-5", "line 8, BlChord: got '-5', allowed is above 0 to 100 m"),
         ("5.208839941579524e+00", "wide", "line 8, BlChord: got 'wide', must be a number"),

@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from bladegen.errors import GeometryError
 from bladegen.landmarks import landmark_parameters, landmarks
 from bladegen.sections import SectionSplines
 from strategies import airfoils, box, circle, ellipse, four_digit
@@ -50,6 +51,19 @@ def test_thickness_of_ellipses(thickness):
     xy = circle(721) * [1.0, thickness]
     curves = SPLINES.fit(landmarks(xy, 401)[None])
     assert_allclose(curves.relative_thickness, thickness, atol=1e-7)
+
+
+@given(st.lists(airfoils(), min_size=2, max_size=4))
+def test_thickness_does_not_depend_on_the_company(contours):
+    points = np.stack([landmarks(xy, 401) for xy in contours])
+    alone = [SPLINES.fit(one[None]).thickness[0] for one in points]
+    assert_allclose(SPLINES.fit(points).thickness, alone, rtol=1e-12)
+
+
+def test_a_section_without_thickness_cannot_be_brought_to_one():
+    flat = landmarks(circle(721), 401) * [1.0, 0.0]
+    with pytest.raises(GeometryError, match="no thickness"):
+        SPLINES.normalising(flat[None], np.array([0.2]))
 
 
 @given(airfoils(), st.floats(0.6, 1.6))

@@ -134,7 +134,7 @@ def _table(lines: list[str], notes: Notes) -> dict[str, Array] | None:
         (line.split()[0] for line in lines[:start] if "NumBlNds" in line.split()[1:2]), ""
     )
     count = number(stated)
-    if count is None or count != int(count) or not 2 <= count <= 100_000:
+    if count is None or not 2 <= count <= 100_000 or count != int(count):
         notes.problems.append(f"NumBlNds: got {stated[:40]!r}, allowed are whole numbers from 2")
         return None
     rows = [line.split() for line in lines[start + 2 : start + 2 + int(count)]]

@@ -1,6 +1,6 @@
 .DEFAULT_GOAL := help
 LOCK = --quiet --universal --python-version 3.11 --no-header --no-emit-index-url --no-annotate
-.PHONY: help demo lint test docs bench mutants lock licences sbom audit clean
+.PHONY: help demo lint test docs bench mutants lock licences sbom audit release clean
 
 help: ## show this
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
@@ -47,6 +47,10 @@ sbom: ## write a software bill of materials, CycloneDX, into dist/
 audit: ## look known vulnerabilities of all that is pinned up
 	@./scripts/setup.sh dev
 	.venv/bin/pip-audit -r locks/dev.txt --no-deps --disable-pip
+
+release: ## build sdist and wheel into dist/, and try the wheel in a fresh environment
+	@./scripts/setup.sh dev
+	./scripts/release.sh
 
 clean: ## remove what was made here
 	rm -rf .venv out site build dist .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache

@@ -16,6 +16,7 @@ from bladegen.cli_options import (
     LANDMARKS,
     MAKING,
     PRODUCING,
+    Airfoils,
     BladeName,
     Formats,
     Json,
@@ -123,12 +124,12 @@ def list_blades() -> None:
 
 
 @app.command()
-def info(blade: BladeName, as_json: Json = False) -> None:
+def info(blade: BladeName, airfoils: Airfoils = None, as_json: Json = False) -> None:
     """Show what a blade's definition holds."""
     from bladegen.readers import read
     from bladegen.tables import definition_figures, station_rows
 
-    definition = read(blade)
+    definition = read(blade, airfoils=airfoils)
     figures = definition_figures(definition)
     if as_json:
         typer.echo(json.dumps(figures, indent=2))

@@ -1,12 +1,13 @@
 """The command `bladegen check`: measure one thing, or the distance between two."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli_options import MAKING, Json
+from bladegen.cli_options import MAKING, Airfoils, Json
 from bladegen.errors import BladegenError
 from bladegen.terminal import print_figures, print_findings, print_table, progress_bar
 
@@ -24,6 +25,7 @@ def check(
     screenshot: Annotated[
         Path | None, typer.Option(help="With OTHER: a PNG of FILE coloured by distance.")
     ] = None,
+    airfoils: Airfoils = None,
     as_json: Json = False,
 ) -> None:
     """Measure a solid, a mesh or a blade definition, or the distance between two of them.
@@ -31,13 +33,13 @@ def check(
     Exit with 1 if a single one is not sound.
     """
     if other is not None:
-        _compare(file, other, screenshot, as_json)
+        _compare(file, other, screenshot, airfoils, as_json)
         return
     if screenshot is not None:
         raise BladegenError("screenshot: a picture is made of two files; name another one")
     from bladegen import checks
 
-    blade = blade_of(file)
+    blade = blade_of(file, airfoils)
     result = checks.check_file(Path(file)) if blade is None else checks.check_blade(blade)
     if as_json:
         typer.echo(
@@ -59,23 +61,25 @@ def check(
         raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
 
 
-def blade_of(file: str) -> Any:
+def blade_of(file: str, airfoils: Path | None = None) -> Any:
     """Return the blade that a name or a definition means, None for other files."""
     from bladegen.readers import SUFFIXES, bundled
 
     if file in bundled() or Path(file).suffix.lower() in SUFFIXES:
-        return MAKING.blade(file)
+        return replace(MAKING, airfoils=airfoils).blade(file)
     return None
 
 
-def _compare(file: str, other: str, screenshot: Path | None, as_json: bool) -> None:
+def _compare(
+    file: str, other: str, screenshot: Path | None, airfoils: Path | None, as_json: bool
+) -> None:
     """Measure two surfaces against each other and print, or draw, what was found."""
     from bladegen.comparison import compared, draw, surface_of
     from bladegen.files import replacing
 
     with progress_bar() as progress:
         progress("reading")
-        one, two = (surface_of(blade_of(name) or Path(name)) for name in (file, other))
+        one, two = (surface_of(blade_of(name, airfoils) or Path(name)) for name in (file, other))
         progress("measuring distances")
         found, note = compared(one, two)
         if screenshot is not None:

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli_options import BladeName, Polars, Reynolds
+from bladegen.cli_options import Airfoils, BladeName, Polars, Reynolds
 from bladegen.terminal import print_findings, print_table, progress_bar
 
 __all__ = ["convert"]
@@ -29,10 +29,7 @@ def convert(
     ] = None,
     polars: Polars = None,
     reynolds: Reynolds = None,
-    airfoils: Annotated[
-        Path | None,
-        typer.Option(help="Folder of airfoil files, for formats that only name their airfoils."),
-    ] = None,
+    airfoils: Airfoils = None,
 ) -> None:
     """Convert a blade between file formats, and say what the new one cannot hold."""
     from bladegen.errors import ExportError

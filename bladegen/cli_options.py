@@ -10,6 +10,7 @@ from copy import copy
 from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
 from functools import wraps
+from pathlib import Path
 from typing import Annotated, Any, get_args
 
 import typer
@@ -18,6 +19,7 @@ __all__ = [
     "LANDMARKS",
     "MAKING",
     "PRODUCING",
+    "Airfoils",
     "BladeName",
     "Formats",
     "Json",
@@ -72,6 +74,14 @@ class Planes(StrEnum):
 BladeName = Annotated[
     str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a definition's file.")
 ]
+Airfoils = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR",
+        help="Folder of airfoil files, for formats that only name their airfoils; one beside the "
+        "file if not given.",
+    ),
+]
 Formats = Annotated[
     list[str] | None,
     typer.Option(
@@ -111,6 +121,7 @@ Reynolds = Annotated[
 class Making:
     """How a definition becomes a blade."""
 
+    airfoils: Airfoils = None
     path: Annotated[
         PathKind, typer.Option(help="Join stations by geodesics or by a smooth spline.")
     ] = PathKind.geodesic
@@ -144,7 +155,7 @@ class Making:
         named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
         edge = named.get(self.trailing_edge)
         return Blade.from_definition(
-            read(source),
+            read(source, airfoils=self.airfoils),
             landmarks=landmarks,
             path=self.path,
             planes={"axis": normal_to_axis, "z": normal_to_z}[self.planes],

@@ -4,13 +4,17 @@ from typing import Annotated
 
 import typer
 
+from bladegen.cli_options import Airfoils
+
 __all__ = ["studio"]
 
 
 def studio(
     blade: Annotated[
-        str, typer.Argument(metavar="[BLADE]", help="A bundled blade's name, or a windIO file.")
+        str,
+        typer.Argument(metavar="[BLADE]", help="A bundled blade's name, or a definition's file."),
     ] = "iea15mw",
+    airfoils: Airfoils = None,
     port: Annotated[
         int | None, typer.Option(min=0, max=65535, help="Where to listen; 0 takes a free port.")
     ] = None,
@@ -38,4 +42,4 @@ def studio(
                 webbrowser.open(serving.address)
 
         waiting.enter_context(progress_bar())("preparing the blade")
-        serve(blade, host, port, told)
+        serve(blade, host, port, told, airfoils=airfoils)

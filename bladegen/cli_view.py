@@ -90,7 +90,7 @@ def preview(
             raise BladegenError(
                 "compare: takes two files or blades, --screenshot or --html, and nothing else"
             )
-        _compare(*compare, screenshot, html)
+        _compare(*compare, screenshot, html, making.airfoils)
         return
     if blade is None:
         raise BladegenError("preview: name a blade (`bladegen list` shows the bundled ones)")
@@ -154,7 +154,9 @@ def _sweep(
             typer.echo(f"wrote {path}: {count} frames, {path.stat().st_size / 1e6:.1f} MB")
 
 
-def _compare(one: str, other: str, screenshot: Path | None, html: Path | None) -> None:
+def _compare(
+    one: str, other: str, screenshot: Path | None, html: Path | None, airfoils: Path | None
+) -> None:
     """Show a surface coloured by its distance from another one."""
     from bladegen import comparison
     from bladegen import preview as view
@@ -164,7 +166,9 @@ def _compare(one: str, other: str, screenshot: Path | None, html: Path | None) -
     title = f"{one} against {other}"
     with progress_bar() as progress:
         progress("reading")
-        surfaces = [comparison.surface_of(blade_of(name) or Path(name)) for name in (one, other)]
+        surfaces = [
+            comparison.surface_of(blade_of(name, airfoils) or Path(name)) for name in (one, other)
+        ]
         progress("measuring distances")
         found, note = comparison.compared(*surfaces)
         progress("drawing")

@@ -1,6 +1,7 @@
 from pathlib import Path
 
 import pytest
+from test_readers_tables import TABLE, airfoils
 
 import bladegen as bg
 from bladegen.errors import BladegenError, FileError, StudioError
@@ -44,6 +45,20 @@ def test_a_file_from_the_command_line_has_the_same_key_as_its_upload(library, tm
     assert library.entry(key).source == str(path)
     with pytest.raises(FileError, match="neither a bundled blade nor a file"):
         library.add("missing.yaml")
+
+
+def test_shapes_that_a_file_only_names_come_from_a_folder(library, tmp_path):
+    path, folder = tmp_path / "mine.csv", airfoils(tmp_path / "shapes")
+    path.write_text(TABLE)
+    with pytest.raises(FileError, match="--airfoils DIR"):
+        library.add(str(path))
+    key = library.add(str(path), folder)
+    assert library.entry(key).airfoils == str(folder)
+    library._baselines.clear()
+    assert library.baseline(key).blade.length == 20.0
+    foil = folder / "naca.dat"
+    foil.write_text(foil.read_text().replace("1.000000000", "0.999000000"))
+    assert library.add(str(path), folder) not in (key, "mine")
 
 
 @pytest.mark.parametrize(

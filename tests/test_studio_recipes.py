@@ -49,8 +49,10 @@ def test_the_command_makes_the_same_blade(baseline, tmp_path):
 
 
 def test_names_with_blanks_and_quotes_are_one_word():
-    entry = replace(ENTRY, named="my 'blade'; rm -rf.yaml")
-    assert shlex.split(shell(STATES[0], entry, "x"))[2] == entry.named
+    entry = replace(ENTRY, named="my 'blade'; rm -rf.yaml", airfoils="my 'foils'")
+    words = shlex.split(shell(STATES[0], entry, "x"))
+    assert words[2] == entry.named
+    assert words[words.index("--airfoils") + 1] == entry.airfoils
     code = python(STATES[0], entry, "x")
     assert compile(code, "recipe", "exec")
-    assert repr(entry.named) in code
+    assert f"bg.read({entry.named!r}, airfoils={entry.airfoils!r})" in code

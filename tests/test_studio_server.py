@@ -5,6 +5,7 @@ import subprocess
 import sys
 import urllib.error
 import urllib.request
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -51,16 +52,16 @@ def test_a_blade_that_is_none_is_said_before_anything_is_served():
 def test_the_command_says_where_and_opens_the_browser(monkeypatch):
     opened, asked = [], []
 
-    def fake(blade, host, port, told):
-        asked.append((blade, host, port))
+    def fake(blade, host, port, told, *, airfoils):
+        asked.append((blade, host, port, airfoils))
         told(Serving("http://127.0.0.1:1/", lambda: None))
 
     monkeypatch.setattr(server, "serve", fake)
     monkeypatch.setattr("webbrowser.open", opened.append)
-    result = CliRunner().invoke(cli.app, ["studio", "nrel5mw", "--port", "5"])
+    result = CliRunner().invoke(cli.app, ["studio", "a.csv", "--airfoils", "b", "--port", "5"])
     assert result.exit_code == 0
     assert "http://127.0.0.1:1/" in result.output
-    assert asked == [("nrel5mw", "127.0.0.1", 5)]
+    assert asked == [("a.csv", "127.0.0.1", 5, Path("b"))]
     assert opened == ["http://127.0.0.1:1/"]
     CliRunner().invoke(cli.app, ["studio", "--no-browser"])
     assert len(opened) == 1

@@ -4,6 +4,7 @@ from concurrent.futures.process import BrokenProcessPool
 from zipfile import ZipFile
 
 import pytest
+from test_readers_tables import TABLE, airfoils
 
 from bladegen import checks
 from bladegen.errors import StudioError
@@ -51,6 +52,18 @@ def test_a_missed_tolerance_is_a_remark(tmp_path, monkeypatch):
     assert made.path.endswith("nrel5mw-variant.out-of-tolerance.step")
     assert "off the blade" in made.remark
     assert str(tmp_path) not in made.remark
+
+
+def test_a_job_takes_shapes_from_a_folder(tmp_path):
+    path, folder = tmp_path / "mine.csv", airfoils(tmp_path / "shapes")
+    path.write_text(TABLE)
+    state = State("mine", (0.0,) * 4, twist=1.0)
+    target = tmp_path / "out"
+    target.mkdir()
+    made = make(Job(str(path), state, ".sections.csv", str(target), str(folder)))
+    assert made.path.endswith("mine-variant.sections.csv")
+    with pytest.raises(StudioError, match="--airfoils DIR"):
+        make(Job(str(path), state, ".sections.csv", str(target)))
 
 
 def test_a_job_that_cannot_be_done_is_one_error():

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from bladegen.definition import BladeDefinition
-from bladegen.errors import FileError
+from bladegen.errors import FileError, Finding
 from bladegen.readers import windio1, windio2
 from bladegen.readers.document import Node, Notes
 from bladegen.readers.yaml_file import YamlError, load_yaml
@@ -36,13 +36,17 @@ def recognises(path: Path) -> bool:
     return path.suffix.lower() in SUFFIXES
 
 
-def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinition | None:  # noqa: ARG001
+def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinition | None:
     """Read a blade from a turbine file; its airfoils are in the file."""
     try:
         document, findings = load_yaml(path)
     except YamlError as error:
         raise FileError(str(path), [str(error)]) from None
     notes.findings.extend(findings)
+    if airfoils is not None:
+        notes.findings.append(
+            Finding("airfoils", f"are in the file itself; {airfoils} is passed over")
+        )
     root = Node(document, "", notes)
     if document is None:
         root.problem("is empty, must hold a turbine in the layout of windIO")

@@ -1,8 +1,9 @@
 """The blades a studio may show: bundled ones, a file it was started with, and uploads.
 
-A file's key holds its content's hash, so that a link means the same after a restart with the
-same file.  Uploads lie in the studio's temporary folder, each in one of its key, as many as `KEPT`,
-and are read by the same readers as every other file.
+A file's key holds its content's hash, and the definition's where a file may name others, so that a
+link means the same after a restart with the same blade.  Uploads lie in the studio's temporary
+folder, each in one of its key, as many as `KEPT`, and are read by the same readers as every other
+file.
 """
 
 from collections.abc import Callable
@@ -13,8 +14,10 @@ from shutil import rmtree
 from threading import Lock
 
 from bladegen.blade import Blade
+from bladegen.definition import BladeDefinition
 from bladegen.errors import FileError, StudioError
 from bladegen.files import safe_stem
+from bladegen.identity import fingerprint
 from bladegen.pga import ShapeSpace
 from bladegen.readers import bundled, read
 from bladegen.studio.model import Baseline
@@ -40,12 +43,15 @@ class Entry:
         What `readers.read` takes.
     named : str
         What commands call it: the bundled name, or the file as its owner named it.
+    airfoils : str, optional
+        The folder of its airfoil files, where the command line named one.
     """
 
     key: str
     label: str
     source: str
     named: str
+    airfoils: str | None = None
 
 
 class Library:
@@ -86,7 +92,7 @@ class Library:
             )
         return self._entries[key]
 
-    def add(self, source: str) -> str:
+    def add(self, source: str, airfoils: Path | None = None) -> str:
         """Add what a command line names, a bundled blade or a file; return its key.
 
         Raises
@@ -96,10 +102,11 @@ class Library:
         """
         if source in self._entries:
             return source
-        definition = read(source)
+        definition = read(source, airfoils=airfoils)
         path = Path(definition.source)
-        key = _key(path.name, path.read_bytes())
-        entry = Entry(key, path.name, str(path), source)
+        key = _key(path.name, path.read_bytes(), _others(path, definition))
+        folder = None if airfoils is None else str(airfoils)
+        entry = Entry(key, path.name, str(path), source, folder)
         self._prepared(entry, lambda: Blade.from_definition(definition))
         self._entries[key] = entry
         return key
@@ -148,7 +155,7 @@ class Library:
         entry = self.entry(key)
         return self._prepared(
             entry,
-            lambda: Blade.from_definition(read(entry.source)),
+            lambda: Blade.from_definition(read(entry.source, airfoils=entry.airfoils)),
         )
 
     def _prepared(self, entry: Entry, make: Callable[[], Blade]) -> Baseline:
@@ -164,5 +171,13 @@ class Library:
         return found
 
 
-def _key(name: str, content: bytes) -> str:
-    return f"{safe_stem(PurePath(name).stem)[:40]}-{sha256(content).hexdigest()[:10]}"
+def _key(name: str, content: bytes, others: str = "") -> str:
+    digest = sha256(content + others.encode())
+    return f"{safe_stem(PurePath(name).stem)[:40]}-{digest.hexdigest()[:10]}"
+
+
+def _others(path: Path, definition: BladeDefinition) -> str:
+    """Return a fingerprint of a blade whose file may name others; "" if it may not."""
+    if path.suffix.lower() in UPLOADS:
+        return ""
+    return fingerprint(replace(definition, name="blade"))  # its own is the file's

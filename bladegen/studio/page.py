@@ -264,7 +264,8 @@ class Page:
 
         state = self.state
         folder = Path(mkdtemp(prefix="file-", dir=self.studio.folder))
-        job = Job(self.studio.library.entry(state.blade).source, state, suffix, str(folder))
+        entry = self.studio.library.entry(state.blade)
+        job = Job(entry.source, state, suffix, str(folder), entry.airfoils)
         kind = suffix.lstrip(".").upper()
         with self.client:
             note = ui.notification(f"{kind}: starting", spinner=True, timeout=None)

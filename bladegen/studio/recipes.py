@@ -11,6 +11,8 @@ __all__ = ["python", "shell"]
 def shell(state: State, entry: Entry, stem: str) -> str:
     """Return the command that builds the blade of a state into ``out/``."""
     words = ["bladegen", "perturb" if state.changed else "build", entry.named, "-o", "out/"]
+    if entry.airfoils is not None:
+        words += ["--airfoils", entry.airfoils]
     if any(state.t):
         # a value that starts with a minus would be taken for an option
         words.append("--pga=" + ",".join(f"{value:g}" for value in state.t))
@@ -33,11 +35,12 @@ def shell(state: State, entry: Entry, stem: str) -> str:
 
 def python(state: State, entry: Entry, stem: str) -> str:
     """Return the script that makes the blade of a state and writes ``<stem>.step``."""
+    folder = "" if entry.airfoils is None else f", airfoils={entry.airfoils!r}"
     lines = [
         *(["from math import radians", ""] if state.twist else []),
         "import bladegen as bg",
         "",
-        f"blade = bg.Blade.from_definition(bg.read({entry.named!r}))",
+        f"blade = bg.Blade.from_definition(bg.read({entry.named!r}{folder}))",
     ]
     if state.changed:
         asked = []

@@ -84,6 +84,8 @@ def serve(
     host: str = "127.0.0.1",
     port: int | None = None,
     told: Callable[[Serving], None] = lambda _: None,
+    *,
+    airfoils: Path | None = None,
 ) -> None:
     """Serve the studio until it is stopped or interrupted.
 
@@ -95,6 +97,8 @@ def serve(
         Where to listen: see `bound`.
     told : callable
         Told once it is served.
+    airfoils : Path, optional
+        The folder of the blade's airfoil files, as `readers.read` takes it.
 
     Raises
     ------
@@ -116,7 +120,7 @@ def serve(
         from threadpoolctl import threadpool_limits
 
         library = Library(folder)
-        studio = Studio(folder, library, library.add(source))
+        studio = Studio(folder, library, library.add(source, airfoils))
         library.baseline(studio.first)
         token = None if is_loopback(host) else token_urlsafe(18)
         # small matrices: more threads only wait for each other

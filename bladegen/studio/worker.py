@@ -40,12 +40,15 @@ class Job:
         The format.
     folder : str
         Where to.
+    airfoils : str, optional
+        The folder of the blade's airfoil files, as `readers.read` takes it.
     """
 
     source: str
     state: State
     suffix: str
     folder: str
+    airfoils: str | None = None
 
     @property
     def told(self) -> Path:
@@ -87,7 +90,7 @@ def _made(job: Job) -> Made:
         job.told.write_text(message, encoding="utf-8")
 
     told("reading the blade")
-    baseline = _baseline(job.source)
+    baseline = _baseline(job.source, job.airfoils)
     variant = baseline.variant(job.state)
     path = Path(job.folder) / f"{baseline.stem(job.state)}{job.suffix}"
     told(f"making {job.suffix.lstrip('.').upper()}")
@@ -111,9 +114,10 @@ def _together(path: Path, job: Job) -> Path:
 
 
 @lru_cache(2)
-def _baseline(source: str) -> Baseline:
+def _baseline(source: str, airfoils: str | None) -> Baseline:
     """Return a blade; what lies under a source in a studio's folder never changes."""
-    return Baseline(source, Blade.from_definition(read(source)), ShapeSpace.bundled())
+    definition = read(source, airfoils=airfoils)
+    return Baseline(source, Blade.from_definition(definition), ShapeSpace.bundled())
 
 
 class Worker:

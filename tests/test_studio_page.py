@@ -12,6 +12,7 @@ from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
+from test_readers_tables import TABLE, table
 
 import bladegen as bg
 from bladegen import checks
@@ -260,6 +261,23 @@ def test_a_good_file_and_another_blade_are_shown(opened):
     tab.get_by_text("86.4 m long").wait_for()
     tab.reload()
     tab.get_by_text("86.4 m long").wait_for()
+
+
+def test_a_table_is_loaded_with_its_airfoils(opened, tmp_path):
+    path = table(tmp_path, TABLE)
+    tab = opened()
+    tab.set_input_files("input[type=file]", files=[str(path)])
+    tab.get_by_text("what it names must be loaded together with it").wait_for()
+    assert state(tab) == {"blade": "nrel5mw"}
+    shapes = sorted((tmp_path / "airfoils").iterdir())
+    tab.set_input_files("input[type=file]", files=[str(file) for file in [*shapes, path]])
+    tab.get_by_text("loaded blade.csv").wait_for()
+    tab.wait_for_function("() => location.search.startsWith('?blade=blade-')")
+    tab.get_by_text("20.0 m long").wait_for()
+    with tab.expect_download() as download:
+        click(tab, "Export a file")
+        tab.get_by_label("Export .sections.csv").click()
+    assert download.value.suggested_filename == "blade.sections.csv"
 
 
 def test_two_tabs_do_not_disturb_each_other(opened):

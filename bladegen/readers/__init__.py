@@ -14,7 +14,7 @@ from bladegen.errors import DefinitionError, FileError
 from bladegen.readers import hawc2, numad, openfast, spanwise_table, turbine_file
 from bladegen.readers.document import Notes
 
-__all__ = ["FORMATS", "SUFFIXES", "Format", "bundled", "read"]
+__all__ = ["FORMATS", "SUFFIXES", "Format", "bundled", "holds_blade", "read"]
 
 
 @dataclass(frozen=True)
@@ -93,6 +93,11 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
     if definition is None or notes.problems:
         raise FileError(str(source), notes.shown())
     return replace(definition, format=definition.format or row.name)
+
+
+def holds_blade(path: Path) -> bool:
+    """Tell whether a file looks like a blade's, by its suffix and a bounded look into it."""
+    return any(path.suffix.lower() in row.suffixes and row.recognises(path) for row in FORMATS)
 
 
 def bundled() -> tuple[str, ...]:

@@ -6,11 +6,12 @@ folder, each in one of its key, as many as `KEPT`, and are read by the same read
 file.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path, PurePath
 from shutil import rmtree
+from tempfile import TemporaryDirectory
 from threading import Lock
 
 from bladegen.blade import Blade
@@ -19,13 +20,26 @@ from bladegen.errors import FileError, StudioError
 from bladegen.files import safe_stem
 from bladegen.identity import fingerprint
 from bladegen.pga import ShapeSpace
-from bladegen.readers import bundled, read
+from bladegen.readers import (
+    SUFFIXES,
+    airfoil_files,
+    bundled,
+    hawc2,
+    holds_blade,
+    openfast,
+    read,
+    turbine_file,
+)
 from bladegen.studio.model import Baseline
 
-__all__ = ["UPLOADS", "UPLOAD_BYTES", "Entry", "Library"]
+__all__ = ["UPLOADS", "UPLOAD_BYTES", "UPLOAD_FILES", "Entry", "Library"]
 
-UPLOADS = (".yaml", ".yml", ".json")  # formats that name no other files
-UPLOAD_BYTES = 8 * 2**20  # the largest windIO example has 0.7 MB
+WHOLE = turbine_file.SUFFIXES  # formats that name no other files
+UPLOADS = tuple(dict.fromkeys([*SUFFIXES, *airfoil_files.SUFFIXES]))
+UPLOAD_BYTES = 8 * 2**20  # of a blade's files together; the largest windIO example has 0.7 MB
+UPLOAD_FILES = 500  # the IEA 15 MW from HAWC2 or OpenFAST comes in 100 to 140
+SHOWN = 120  # letters of what was sent that a message holds
+TOGETHER = "what it names must be loaded together with it, or `bladegen convert` it to .yaml first"
 KEPT = 12  # uploads and prepared blades that are kept, each
 
 
@@ -111,43 +125,55 @@ class Library:
         self._entries[key] = entry
         return key
 
-    def upload(self, name: str, content: bytes) -> str:
-        """Add a file that a browser sent; return its key.
+    def upload(self, *files: tuple[str, bytes]) -> str:
+        """Add a blade that a browser sent, each file by its name and content; return its key.
+
+        One file is the blade's, the others are airfoils and tables that it names.
 
         Raises
         ------
         FileError
-            If it is too large, of a format that names other files, or no blade.
+            If they are too large or of no known format, or there is no blade or more than one.
         """
-        plain = PurePath(name.replace("\\", "/")).name[:120] or "file"
-        suffix = PurePath(plain).suffix.lower()
-        if suffix not in UPLOADS:
-            raise FileError(plain, [f"has the suffix {suffix!r}, allowed are {', '.join(UPLOADS)}"])
-        if len(content) > UPLOAD_BYTES:
-            raise FileError(plain, [f"is larger than {UPLOAD_BYTES >> 20} MB"])
-        key = _key(plain, content)
-        with self._lock:
-            if key in self._entries:
-                return key
-        path = self._folder / key / f"{safe_stem(PurePath(plain).stem)}{suffix}"
-        path.parent.mkdir(exist_ok=True)
-        path.write_bytes(content)
-        try:
-            definition = replace(read(path), source=plain)
-            entry = Entry(key, plain, str(path), plain)
+        named = {_stored(name): (_plain(name), content) for name, content in files}
+        shown = ", ".join(plain for plain, _ in named.values())[:SHOWN]
+        for plain, _ in named.values():
+            suffix = PurePath(plain).suffix.lower()
+            if suffix not in UPLOADS:
+                allowed = ", ".join(UPLOADS)
+                raise FileError(plain, [f"has the suffix {suffix!r}, allowed are {allowed}"])
+        if sum(len(content) for _, content in files) > UPLOAD_BYTES:
+            raise FileError(shown, [f"is larger than {UPLOAD_BYTES >> 20} MB"])
+        if not 0 < len(named) == len(files) <= UPLOAD_FILES:
+            raise FileError(
+                shown, [f"got {len(files)} files, allowed are {UPLOAD_FILES} of different names"]
+            )
+        with TemporaryDirectory(dir=self._folder, ignore_cleanup_errors=True) as name:
+            place = Path(name)
+            for stored, (_, content) in named.items():
+                (place / stored).write_bytes(content)
+            path = _blade_among(place, shown)
+            plain, content = named[path.name]
+            _airfoils_apart(path, content, named)
+            try:
+                definition = replace(read(path), source=plain)
+            except FileError as error:
+                problems = [problem.replace(f"{place}/", "") for problem in error.problems]
+                alone = len(files) == 1 and path.suffix.lower() not in WHOLE
+                raise FileError(plain, problems + [TOGETHER] * alone) from None
+            key = _key(plain, content, _others(path, definition))
+            entry = Entry(key, plain, str(self._folder / key / path.name), plain)
             self._prepared(entry, lambda: Blade.from_definition(definition))
-        except BaseException as error:
-            rmtree(path.parent)
-            if isinstance(error, FileError):
-                raise FileError(plain, error.problems) from None
-            raise
-        with self._lock:
-            self._entries[key] = entry
-            self._uploads.append(key)
-            for old in self._uploads[:-KEPT]:
-                rmtree(Path(self._entries.pop(old).source).parent, ignore_errors=True)
-                self._baselines.pop(old, None)
-            del self._uploads[:-KEPT]
+            with self._lock:
+                if key in self._entries:
+                    return key
+                place.rename(self._folder / key)
+                self._entries[key] = entry
+                self._uploads.append(key)
+                for old in self._uploads[:-KEPT]:
+                    rmtree(Path(self._entries.pop(old).source).parent, ignore_errors=True)
+                    self._baselines.pop(old, None)
+                del self._uploads[:-KEPT]
         return key
 
     def baseline(self, key: str) -> Baseline:
@@ -178,6 +204,37 @@ def _key(name: str, content: bytes, others: str = "") -> str:
 
 def _others(path: Path, definition: BladeDefinition) -> str:
     """Return a fingerprint of a blade whose file may name others; "" if it may not."""
-    if path.suffix.lower() in UPLOADS:
+    if path.suffix.lower() in WHOLE:
         return ""
     return fingerprint(replace(definition, name="blade"))  # its own is the file's
+
+
+def _plain(name: str) -> str:
+    """Return a file's name as its owner knows it, without folders."""
+    return PurePath(name.replace("\\", "/")).name[:SHOWN] or "file"
+
+
+def _stored(name: str) -> str:
+    """Return the name under which a file that was sent is kept."""
+    plain = PurePath(_plain(name))
+    return f"{safe_stem(plain.stem)}{plain.suffix.lower()}"
+
+
+def _blade_among(place: Path, shown: str) -> Path:
+    """Return the one file of a folder that is a blade's; a single file is."""
+    files = list(place.iterdir())
+    found = [path for path in files if len(files) == 1 or holds_blade(path)]
+    if len(found) != 1:
+        names = ", ".join(sorted(path.name for path in found)) or "none"
+        raise FileError(shown, [f"must hold one blade, got {names[:SHOWN]}"])
+    return found[0]
+
+
+def _airfoils_apart(path: Path, content: bytes, stored: Iterable[str]) -> None:
+    """Move what is no table of the blade's into the folder in which airfoils are looked for."""
+    tables = {f"{path.stem}{suffix}" for suffix in (hawc2.AE_SUFFIX, openfast.TWIST_SUFFIX)}
+    folder = path.with_name("airfoils")
+    for name in stored:
+        if name != path.name and name not in tables and name.encode() not in content:
+            folder.mkdir(exist_ok=True)
+            path.with_name(name).rename(folder / name)

@@ -163,12 +163,12 @@ class Page:
         if found is not None:  # which it is when the studio ends
             self.move(self.history.moved(found))
 
-    async def load(self, name: str, content: bytes) -> None:
-        """Take a file that was uploaded; one that is no blade is said and changes nothing."""
+    async def load(self, *files: tuple[str, bytes]) -> None:
+        """Take a blade's files that were uploaded; what is no blade is said and changes nothing."""
         from nicegui import run
 
         try:
-            key = await run.io_bound(self.studio.library.upload, name, content)
+            key = await run.io_bound(self.studio.library.upload, *files)
         except BladegenError as error:
             self.say(str(error), bad=True)
             return

@@ -6,7 +6,7 @@ from html import escape
 from typing import Any
 
 from bladegen.studio.elements import number, stage
-from bladegen.studio.library import UPLOAD_BYTES, UPLOADS
+from bladegen.studio.library import UPLOAD_BYTES, UPLOAD_FILES, UPLOADS
 from bladegen.studio.page import Page, Shown
 from bladegen.studio.state import AFFINE, END, START, Control
 from bladegen.studio.worker import formats
@@ -81,22 +81,30 @@ def _bar(page: Page) -> None:
         library = page.studio.library
         select = ui.select(library.labels, value=page.state.blade)
         select.props('dense options-dense borderless aria-label="Blade"').classes("w-40")
+
+        async def took(event: Any) -> None:
+            await page.load(*[(file.name, await file.read()) for file in event.files])
+            upload.reset()
+
         upload = ui.upload(
-            max_file_size=UPLOAD_BYTES,
+            multiple=True,
+            max_total_size=UPLOAD_BYTES,
+            max_files=UPLOAD_FILES,
             auto_upload=True,
+            on_multi_upload=took,
             on_rejected=lambda: page.say(
-                f"file: must end in {', '.join(UPLOADS)} and have at most {UPLOAD_BYTES >> 20} MB",
+                f"files: must end in {', '.join(UPLOADS)} and have at most {UPLOAD_BYTES >> 20} MB "
+                f"together, {UPLOAD_FILES} of them",
                 bad=True,
             ),
         ).classes("away")
         upload.props(f'accept="{",".join(UPLOADS)}" aria-hidden=true tabindex=-1')
 
-        async def took(event: Any) -> None:
-            await page.load(event.file.name, await event.file.read())
-            upload.reset()
-
-        upload.on_upload(took)
-        _button("upload_file", "Load a blade file", lambda: upload.run_method("pickFiles"))
+        _button(
+            "upload_file",
+            "Load a blade, with the airfoil files that it names",
+            lambda: upload.run_method("pickFiles"),
+        )
         ui.element("span").classes("push")
         undo = _button("undo", "Undo", page.undo, "Ctrl Z")
         redo = _button("redo", "Redo", page.redo, "Ctrl Shift Z")

@@ -23,7 +23,7 @@ from bladegen.studio.page import Page, Studio
 __all__ = ["PORT", "Serving", "bound", "serve"]
 
 PORT = 8642
-ENVELOPE = 2**16  # bytes around an upload
+ENVELOPE = 2**18  # bytes around the files of an upload
 HISTORY = 30  # messages kept for a tab that reconnects
 RECONNECT = 15.0  # s that a tab may be away
 PREPARING = 60.0  # s that a blade may take before its page is given up

@@ -1,6 +1,8 @@
 """Readers of spanwise tables, workbooks, NuMAD, OpenFAST and HAWC2: what users' files are like."""
 
+import gc
 import zipfile
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +49,31 @@ def table(folder: Path, text: str, name: str = "blade.csv") -> Path:
     path = folder / name
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def test_damaged_workbooks_are_closed_at_once(tmp_path):
+    whole, cut = tmp_path / "whole.xlsx", tmp_path / "cut.xlsx"
+    bg.write(bg.read(table(tmp_path, TABLE)), whole)
+    with zipfile.ZipFile(whole) as source:
+        members = {name: source.read(name) for name in source.namelist()}
+    still_open = []
+    gc.disable()  # which would close some of what is left open, and warn of it
+    try:
+        for damaged in members:
+            with zipfile.ZipFile(cut, "w") as target:
+                for name, content in members.items():
+                    target.writestr(
+                        name, content if name != damaged else content[: len(content) // 2]
+                    )
+            with suppress(FileError):
+                bg.read(cut)
+            opened = [
+                file.readlink() for file in Path("/proc/self/fd").iterdir() if file.is_symlink()
+            ]
+            still_open += [damaged] * (cut in opened)
+    finally:
+        gc.enable()
+    assert not still_open
 
 
 def test_a_plain_table_with_usual_headers_is_read(tmp_path):

@@ -73,8 +73,10 @@ def _opened(path: Path) -> Iterator[Any]:
     from openpyxl import load_workbook
 
     try:
-        with closing(load_workbook(path, read_only=True, data_only=True, keep_links=False)) as book:
-            yield book
+        with path.open("rb") as stream:  # openpyxl does not close what it opened when it fails
+            book = load_workbook(stream, read_only=True, data_only=True, keep_links=False)
+            with closing(book):
+                yield book
     except Exception as error:  # openpyxl parses late and lets through whatever its parsers raise
         said = " ".join(str(error).split())[:120] or type(error).__name__
         raise FileError(str(path), [f"is no workbook that can be read: {said}"]) from None

@@ -20,11 +20,18 @@ def main(target: Path) -> None:
     for k, station in enumerate(blade.definition.stations):
         colour = plots.shade(k / (len(profiles) - 1))
         label = f"{station.eta:.2f} {station.airfoil.name}"
-        physical.plot(*profiles[k].T, color=colour, label=label)
-        standard.plot(*X[k].T, color=colour)
+        physical.plot(*profiles[k].T, color=colour)
+        standard.plot(*X[k].T, color=colour, label=label)
     physical.set(title="physical, in chords", xlabel="x", ylabel="y", aspect="equal")
     standard.set(title="landmark-affine standardised", xlabel="first column of X", aspect="equal")
-    physical.legend(fontsize=6, title="eta, airfoil", title_fontsize=7, loc="lower right")
+    standard.set_xticks([-0.05, 0.0, 0.05])
+    standard.legend(
+        fontsize=7,
+        title="eta, airfoil",
+        title_fontsize=8,
+        loc="center left",
+        bbox_to_anchor=(1, 0.5),
+    )
     plots.save_figure(drawn, target)
     print(f"wrote {target}")
 

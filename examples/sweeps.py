@@ -51,12 +51,14 @@ def main(target: Path) -> None:
     flat_pga = plots.physical(space.decode(by_pga.reshape(-1, 4)), airfoils[4])
     shares = [100.0 * valid(shapes).mean() for shapes in (flat_cst, flat_pga)]
 
-    drawn, axes = plots.figure(2, SHOWN, width=12, height=5)
+    drawn, axes = plots.figure(2, SHOWN, width=12, height=5.2)
     for row, (shapes, title) in enumerate(((flat_cst, "CST"), (flat_pga, "principal geodesics"))):
         for column, sweep in enumerate(shapes.reshape(SWEEPS, STEPS, -1, 2)[:SHOWN]):
             for k, shape in enumerate(sweep):
                 axes[row, column].plot(*shape.T, color=plots.shade(k / (STEPS - 1)), linewidth=0.8)
-            axes[row, column].set(aspect="equal", title=f"{title}, sweep {column + 1}")
+            axes[row, column].set(
+                aspect="equal", ylim=(-0.32, 0.32), title=f"{title}, sweep {column + 1}"
+            )
     plots.save_figure(drawn, target)
     print(
         f"wrote {target}; valid shapes along {SWEEPS} sweeps of {STEPS} steps, seed {SEED}: "

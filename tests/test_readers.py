@@ -234,6 +234,13 @@ def test_section_offset_x_is_read(path):
     assert_allclose(definition.offset_x([0.0, 0.5, 1.0]), [0.1, 0.2, 0.3])
 
 
+def test_a_lofted_surface_is_passed_over_and_said(path):
+    surface = {"grid": [0.0, 1.0], **{key: [[0.0, 1.0]] * 2 for key in "xyz"}}
+    document = changed(windio2(), ("components.blade.outer_shape.surface", surface))
+    assert "outer_shape.surface: is passed over" in findings(read(document, path))
+    assert "surface" not in findings(read(windio2(), path))
+
+
 def test_airfoils_outside_the_schedule_are_of_no_concern(path):
     document = windio2()
     document["airfoils"].append({"name": "unused", "coordinates": "broken"})

@@ -109,6 +109,8 @@ def read(root: Node, path: Path, layout: Layout) -> BladeDefinition | None:
         _ = shape[layout.offset]  # its absence is the problem
     elif len(given) == 2:
         shape.problem("got both pitch_axis and section_offset_y, allowed is one of them")
+    if shape.has("surface"):
+        shape["surface"].finding("is passed over; the blade is made from airfoils, chord and twist")
     entries = layout.schedule(shape)
     library = airfoils(root["airfoils"], [(e.name, e.node) for e in entries], layout.thickness)
     stations = _stations(entries, library, rthick)

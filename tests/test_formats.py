@@ -214,6 +214,19 @@ def test_grid_points_that_nearly_meet_are_one():
     assert common_grid(near)[0][-1] == 1.0
 
 
+@pytest.mark.parametrize("gap", [1e-10, 1e-13, 2**-53])
+def test_grids_that_all_but_meet_are_kept_in_a_csv_file(tmp_path, gap):
+    eta = np.array([0.0, 0.3, 0.5, 0.8, 1.0])
+    near = eta + gap * np.array([0.0, 0.0, 1.0, -1.0, 0.0])
+    values = np.array([4.0, 5.0, 4.0, 2.0, 1.0])
+    given = changed(chord=Distribution(eta, values), twist=Distribution(near, values / 20.0))
+    bg.write(given, tmp_path / "a.csv")
+    made = bg.read(tmp_path / "a.csv")
+    assert_array_equal(made.chord.grid, eta)
+    assert_array_equal(made.twist.grid, near)
+    assert_array_equal(made.chord.values, values)
+
+
 def test_airfoils_of_one_name_and_odd_names_are_kept_apart(tmp_path):
     plain = bg.read("nrel5mw")
     _first, *_, last = plain.stations

@@ -18,7 +18,11 @@ __all__ = ["unique_names", "write_airfoils"]
 
 
 def unique_names(stations: Iterable[Station]) -> dict[int, tuple[str, Airfoil]]:
-    """Return a name of its own for each airfoil of a blade, by the airfoil's `id`."""
+    """Return a name of its own for each airfoil of a blade, by the airfoil's `id`.
+
+    For tables and sheets, so printable and no formula; `windio.uniquely_named` keeps names as they
+    are, and one name for airfoils that are alike.
+    """
     named: dict[int, tuple[str, Airfoil]] = {}
     taken: set[str] = set()
     for station in stations:

@@ -19,10 +19,10 @@ from bladegen.definition import Airfoil, BladeDefinition, Station
 from bladegen.errors import BladegenError, Finding
 from bladegen.extension import extended
 from bladegen.landmarks import landmarks
-from bladegen.polars import Polar
+from bladegen.polars import ESTIMATED, Polar
 from bladegen.sections import SectionSplines
 
-__all__ = ["POLICIES", "available", "estimated", "reynolds_at", "with_polars"]
+__all__ = ["POLICIES", "available", "chord_reynolds", "estimated", "reynolds_at", "with_polars"]
 
 POLICIES = ("estimate", "keep", "none")
 MODEL = "xlarge"
@@ -98,7 +98,7 @@ def with_polars(
 
 def _said(stations: tuple[Station, ...], policy: str, borrowed: int) -> tuple[Finding, ...]:
     airfoils = {id(station.airfoil): station.airfoil for station in stations}.values()
-    guessed = [a for a in airfoils if a.polars and a.polars[0].source.startswith("estimate")]
+    guessed = [a for a in airfoils if a.polars and a.polars[0].is_estimate]
     bare = sum(not airfoil.polars for airfoil in airfoils)
     said = []
     if guessed and policy == "estimate":
@@ -111,13 +111,16 @@ def _said(stations: tuple[Station, ...], policy: str, borrowed: int) -> tuple[Fi
 
 
 def reynolds_at(definition: BladeDefinition, station: Station) -> float:
-    """Return the Reynolds number of a station: its polars', else its chord's at `TIP_SPEED`."""
+    """Return the Reynolds number of a station: its polars', else its chord's."""
     known = [polar.reynolds for polar in station.airfoil.polars if polar.reynolds]
-    if known:
-        return float(known[0])
+    return float(known[0]) if known else chord_reynolds(definition, station.eta)
+
+
+def chord_reynolds(definition: BladeDefinition, eta: float) -> float:
+    """Return the Reynolds number of the chord at a span fraction, the tip at `TIP_SPEED`."""
     hub = definition.rotor.hub_radius or 0.0
-    ratio = (hub + station.eta * definition.length) / (hub + definition.length)
-    rough = float(definition.chord(station.eta)) * max(ratio, 0.05) * TIP_SPEED / AIR
+    ratio = (hub + eta * definition.length) / (hub + definition.length)
+    rough = float(definition.chord(eta)) * max(ratio, 0.05) * TIP_SPEED / AIR
     return float(f"{rough:.2g}")
 
 
@@ -130,7 +133,7 @@ def estimated(airfoil: Airfoil, reynolds: float) -> Polar:
     alpha, cl, cd, cm, confidence = _neuralfoil(thinned, reynolds)
     alpha, cl, cd, cm = extended(alpha, cl, cd, cm)
     source = (
-        f"estimate: NeuralFoil {version('neuralfoil')} ({MODEL}), Viterna beyond stall; "
+        f"{ESTIMATED}: NeuralFoil {version('neuralfoil')} ({MODEL}), Viterna beyond stall; "
         f"Re = {reynolds:.3g}, least confidence {confidence:.2f}"
     )
     if mixed > 0.0:

@@ -13,9 +13,10 @@ import numpy as np
 from bladegen.arrays import Array, readonly
 from bladegen.errors import DefinitionError
 
-__all__ = ["BORROWED", "Polar", "blended"]
+__all__ = ["BORROWED", "ESTIMATED", "Polar", "blended"]
 
 BORROWED = "of the baseline"  # how the source of such a polar begins, in files too
+ESTIMATED = "estimate"  # and that of one that was estimated
 FEWEST = 2
 
 
@@ -66,6 +67,11 @@ class Polar:
     def is_borrowed(self) -> bool:
         """Whether it is that of a baseline, kept for another shape."""
         return self.source.startswith(BORROWED)
+
+    @property
+    def is_estimate(self) -> bool:
+        """Whether it was estimated, not measured or published."""
+        return self.source.startswith(ESTIMATED)
 
     def at(self, alpha: Array) -> tuple[Array, Array, Array]:
         """Return lift, drag and moment at angles [rad], linear between the polar's own."""

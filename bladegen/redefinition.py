@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bladegen.arrays import Array, Mask
+from bladegen.blending import between
 from bladegen.definition import (
     Airfoil,
     BladeDefinition,
@@ -24,7 +25,7 @@ from bladegen.definition import (
 )
 from bladegen.errors import Finding
 from bladegen.landmarks import contour
-from bladegen.polars import BORROWED, Polar, blended
+from bladegen.polars import BORROWED, Polar
 
 if TYPE_CHECKING:
     from bladegen.blade import Blade
@@ -33,7 +34,6 @@ __all__ = ["TOLERANCE", "redefined", "sampled"]
 
 TOLERANCE = 5e-4  # m: between stations, from the sections of the blade to those of the definition
 SHARE = 0.1  # of the tolerance, for each distribution
-BY_THICKNESS = 1e-3  # of the chord; polars are blended by thickness where it differs by more
 MOST_STATIONS = 400
 MOST_POINTS = 2_000  # of a distribution's grid
 UNCHANGED = 1e-9  # of a deformation's size or a thickening; less leaves an airfoil as it is
@@ -171,24 +171,8 @@ class _Shapes:
 
     def _polars(self, eta: float) -> tuple[tuple[Polar, ...], float | None]:
         """Return the baseline's polars and aerodynamic centre there, marked as the baseline's."""
-        stations = self.blade.definition.stations
-        after = max(1, int(np.searchsorted([station.eta for station in stations[:-1]], eta)))
-        one, other = stations[after - 1], stations[after]
-        weight = float(np.clip((eta - one.eta) / (other.eta - one.eta), 0.0, 1.0))
-        rthick = self.blade.definition.relative_thickness
-        if rthick is not None:
-            ends, here = rthick(np.array([one.eta, other.eta])), float(rthick(eta))
-            if abs(ends[1] - ends[0]) > BY_THICKNESS:
-                weight = float(np.clip((here - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0))
-        first, second = one.airfoil, other.airfoil
-        near = first if weight < 0.5 else second
-        if not (first.polars and second.polars):
-            return (), near.aerodynamic_center
-        source = f"{BORROWED}, not of this shape: {first.name}"
-        if second is not first and weight > 0.0:
-            source += f" and {second.name}, {100 * weight:.0f} % of the latter"
-        polars = blended(first.polars, second.polars, weight, source)
-        return polars, near.aerodynamic_center
+        found = between(self.blade.definition, eta)
+        return found.polars(f"{BORROWED}, not of this shape"), found.near.aerodynamic_center
 
     def _changed(self, eta: Array) -> Mask:
         plain, X, _, _ = self.blade.shapes(eta)

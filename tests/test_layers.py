@@ -26,6 +26,7 @@ FLOW = [
     "definition",
     "conventions",
     "extension",
+    "blending",
     "readers",
     "affine",
     "roots",

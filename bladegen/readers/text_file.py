@@ -51,20 +51,22 @@ def read_lines(path: Path) -> list[str]:
     return content.decode("utf-8-sig", errors="replace").splitlines()
 
 
-def referred(name: str, bases: Sequence[Path]) -> Path | None:
+def referred(name: str, bases: Sequence[Path], below: Path | None = None) -> Path | None:
     """Return the file that `name` refers to from one of `bases`, if it lies below that base.
 
-    Names may be quoted and written with the separators of Windows.
+    If `below` is given the file must lie below that folder instead.  Names may be quoted and
+    written with the separators of Windows.
     """
     plain = name.strip().strip("\"'").strip()
     if not plain or "\0" in plain:
         return None
     relative = Path(*PureWindowsPath(plain).parts) if "\\" in plain else Path(plain)
+    limit = None if below is None else below.resolve()
     for base in bases:
         root = base.resolve()
         try:
             found = (root / relative).resolve()
-            if found.is_relative_to(root) and found.is_file():
+            if found.is_relative_to(limit or root) and found.is_file():
                 return found
         except (OSError, ValueError):  # a name too long for the system
             continue

@@ -1,11 +1,15 @@
-"""OpenFAST: an AeroDyn blade file, an airfoil coordinate file a node, and ElastoDyn's twist.
+"""OpenFAST: an AeroDyn blade file, airfoil files of its nodes, and ElastoDyn's twist.
 
-AeroDyn takes the airfoil of a node as it is, without blending, so a blade's sections are written
-node by node; nodes that share a shape share its file.  Conventions: `bladegen.readers.openfast`.
-The reference point of an airfoil, of which the curve and sweep columns tell, is the quarter
+AeroDyn takes the airfoil of a node as it is, without blending, so a blade's sections and polars
+are written node by node; nodes that share both share their files.  Polars are written where all
+nodes have some, with the lines of AeroDyn's main input that list them.  Conventions:
+`bladegen.readers.openfast`.  The reference point of an airfoil, of which the curve and sweep
+columns tell, is that of its published polars.  Where that is not known it is the quarter
 chord; towards the round root it moves to the half chord, about which a cylinder has no moment.
 """
 
+from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +22,9 @@ from bladegen.errors import Finding
 from bladegen.files import folder, safe_stem
 from bladegen.readers.airfoil_folder import companion
 from bladegen.readers.openfast import TWIST_SUFFIX
+from bladegen.readers.openfast_model import PART_SUFFIX
 from bladegen.resampling import common_grid, shape_grid
+from bladegen.writers.airfoil_info import Tables, info, part, tables_at
 from bladegen.writers.text import aligned, write_lines
 
 __all__ = ["write"]
@@ -28,6 +34,7 @@ SAME_SHAPE = 1e-12  # chords; nodes nearer than this share an airfoil
 TOLERANCE = 5e-4  # m; of a grid of about a hundred nodes, which AeroDyn still runs at ease
 THICK, ROUND = 0.4, 1.0  # of chord: from airfoil to cylinder, as public polar sets have it
 QUARTER, HALF = 0.25, 0.5
+SHOWN = 4  # airfoils that a finding names
 
 
 def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
@@ -39,27 +46,45 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
     blade = Blade.from_definition(definition, landmarks=LANDMARKS)
     eta = shape_grid(blade, eta)
     profiles = blade.profiles(eta)
-    reference = np.interp(
-        blade.splines.fit(profiles).relative_thickness, [THICK, ROUND], [QUARTER, HALF]
-    )
+    thickness = blade.splines.fit(profiles).relative_thickness
+    tables = tables_at(definition, eta.tolist())
+    whole = all(one.polars for one in tables)
+    reference = np.interp(thickness, [THICK, ROUND], [QUARTER, HALF])
     changes = np.abs(np.diff(profiles, axis=0)).max(axis=(1, 2)) > SAME_SHAPE
+    if whole:
+        known = [np.nan if one.reference is None else one.reference for one in tables]
+        reference = np.where(np.isnan(known), reference, known)
+        changes |= [not one.alike(other) for one, other in pairwise(tables)]
+        changes |= np.diff(reference) != 0.0
     ids = np.concatenate([[1], 1 + np.cumsum(changes)])
     stem = safe_stem(path.stem)
     airfoils = folder(companion(path))
     names = {station.eta: station.airfoil.name for station in definition.stations}
+    files = []
     for k in np.unique(ids).tolist():
         first = int(np.argmax(ids == k))
         name = names.get(float(eta[first]), f"section at eta = {eta[first]:.5f}")
-        write_lines(
-            airfoils / f"{stem}_AF{k:03d}_Coords.txt",
-            _coordinates(name, profiles[first], float(reference[first])),
-        )
-    for stale in airfoils.glob(f"{stem}_AF[0-9][0-9][0-9]_Coords.txt"):
-        if int(stale.name[len(stem) + 3 :][:3]) > ids[-1]:  # of a blade with more airfoils
+        coordinates = airfoils / f"{stem}_AF{k:03d}_Coords.txt"
+        write_lines(coordinates, _coordinates(name, profiles[first], float(reference[first])))
+        files.append(airfoils / f"{stem}_AF{k:03d}.dat")
+        if whole:
+            said = info(name, coordinates.name, float(thickness[first]), tables[first])
+            write_lines(files[-1], said)
+    for stale in airfoils.glob(f"{stem}_AF[0-9][0-9][0-9]*"):
+        number = int(stale.name[len(stem) + 3 :][:3])
+        if number > ids[-1] or (stale in files and not whole):  # of a blade that had more
             stale.unlink()
+    listing = path.with_name(f"{path.stem}{PART_SUFFIX}")
+    if whole:
+        most = max(len(one.polars) for one in tables)
+        listed = [f"{airfoils.name}/{file.name}" for file in files]
+        write_lines(listing, part(path.name, listed, most, definition.rotor.blades))
+    else:
+        listing.unlink(missing_ok=True)
     write_lines(path.with_name(f"{path.stem}{TWIST_SUFFIX}"), _twist(definition, eta))
     write_lines(path, _blade(definition, eta, ids, reference))
-    return tuple(_findings(definition, len(eta), int(ids[-1]), loss, airfoils.name))
+    found = _findings(definition, len(eta), int(ids[-1]), loss, airfoils.name)
+    return (*found, *_polar_findings(definition, tables, listing.name))
 
 
 def _blade(definition: BladeDefinition, eta: Array, ids: Array, reference: Array) -> list[str]:
@@ -122,12 +147,12 @@ def _findings(
         ),
         Finding(
             "BlAFID",
-            f"{shapes} airfoils, coordinates in {airfoils}; polars are not written: AFNames must "
-            "list yours in this order",
+            f"{shapes} airfoils, in {airfoils}",
         ),
         Finding(
             "BlCrvAC, BlSwpAC",
-            "of each airfoil's reference point: the quarter chord, the half chord of cylinders",
+            "of each airfoil's reference point: of published polars theirs, else the quarter "
+            "chord, the half chord of cylinders",
         ),
     ]
     if definition.relative_thickness is not None:
@@ -143,3 +168,34 @@ def _findings(
     if definition.rotor.hub_radius is not None:
         found.append(Finding("rotor", "hub radius, cone and tilt stand in ElastoDyn's main input"))
     return found
+
+
+def _polar_findings(
+    definition: BladeDefinition, tables: Sequence[Tables], listing: str
+) -> list[Finding]:
+    """Say where the polars are, or why there are none."""
+    bare = sorted({s.airfoil.name for s in definition.stations if not s.airfoil.polars})
+    if not all(one.polars for one in tables):
+        why = (
+            "there are none" if not any(one.polars for one in tables) else _few(bare) + " have none"
+        )
+        said = f"polars are not written: {why}; AFNames must list yours in the order of BlAFID"
+        return [Finding("AFNames", said)]
+    found = [
+        Finding(
+            "AFNames",
+            f"the files with polars stand in {listing}: put its lines into AeroDyn's main input",
+        )
+    ]
+    more = {
+        station.airfoil.name
+        for station in definition.stations
+        if len({polar.configuration for polar in station.airfoil.polars}) > 1
+    }
+    if more:
+        found.append(Finding("polars", f"of the first configuration alone: {_few(sorted(more))}"))
+    return found
+
+
+def _few(names: Sequence[str]) -> str:
+    return ", ".join(names[:SHOWN]) + (" and more" if len(names) > SHOWN else "")

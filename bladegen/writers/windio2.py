@@ -16,6 +16,7 @@ __all__ = ["blade", "document", "polars", "write"]
 DEGREES = 180.0 / np.pi
 DIGITS = 12  # of angles in degrees, so that those of a file in degrees come back
 OFFSET = 1e-5  # m, by which a sampled offset may be off
+NOT_HELD = frozenset({"b5"})  # of AeroDyn's constants for unsteady aerodynamics
 RATIO = 1e-5  # by which a sampled relative thickness may be off
 
 
@@ -71,7 +72,7 @@ def polars(airfoil: Airfoil) -> list[Document]:
         row: Document = {"re": polar.reynolds or 0.0}
         for key in ("cl", "cd", "cm"):
             row[key] = windio.curve(np.degrees(polar.alpha).round(DIGITS), getattr(polar, key))
-        row |= dict(polar.parameters)
+        row |= {name: value for name, value in polar.parameters if name not in NOT_HELD}
         sets.setdefault((polar.configuration, polar.source), []).append(row)
     return [
         {"configuration": name, **({"description": source} if source else {}), "re_sets": rows}

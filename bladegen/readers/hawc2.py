@@ -4,7 +4,8 @@ Conventions (as the published models of the IEA 15 MW and the DTU 10 MW have the
 half-chord line, x toward the leading edge, y toward the suction side (downwind), z to the
 tip [m]; twist [deg] of opposite sign to windIO's.  The radius of the ae file runs along that
 line and is scaled to its length; the thickness is in per cent.  HAWC2 knows no shapes, only
-polars by thickness: airfoils are placed where the thickness meets theirs.
+polars by thickness (`bladegen.readers.hawc2_polars`): airfoils are placed where the thickness
+meets theirs.
 """
 
 import re
@@ -25,13 +26,15 @@ from bladegen.definition import (
 from bladegen.errors import DefinitionError, Finding
 from bladegen.readers.airfoil_folder import beside, placed_airfoils, thick_airfoils
 from bladegen.readers.document import Notes, Range
+from bladegen.readers.hawc2_polars import Profile, profile_sets, with_profiles
 from bladegen.readers.text_file import head, number, numbers, read_lines, referred, rising
 
-__all__ = ["AE_SUFFIX", "HALF", "MARK", "SUFFIXES", "read", "recognises"]
+__all__ = ["AE_SUFFIX", "HALF", "MARK", "PC_SUFFIX", "SUFFIXES", "read", "recognises"]
 
 MARK = "a main_body with c2_def"
 SUFFIXES = (".htc",)
 AE_SUFFIX = "_ae.dat"
+PC_SUFFIX = "_pc.dat"
 HALF = 0.5
 POSITION = Range(-1000.0, 1000.0, "m")
 TWIST = Range(-90.0, 90.0, "deg")
@@ -41,6 +44,8 @@ THICKNESS = Range(0.0, 105.0, "%", above=True)
 PITCH_AXIS = Range(-1.0, 2.0, "of the chord")
 LENGTHS_ALIKE = 0.01  # of the length; ae files that end farther from c2_def's are a finding
 EDGE = 2e-3  # of the chord; an airfoil may be so much out of the blade's range and be its end
+WHOLE = range(1, 10_000)  # numbers of polar sets
+SEVERAL = "names several polar sets; shapes go by thickness alone"
 MAX_DEPTH = 4  # of continue_in_file
 MAX_LINES = 500_000
 _PITCH_AXIS = re.compile(r";\s*pitch axis\s+([-+0-9.eE]+)")
@@ -84,7 +89,8 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
     shapes = [] if folder is None or placed else thick_airfoils(folder, notes)
     if notes.problems:
         return None
-    (ahead, downwind, z, turn, pitch_axis), (radius, chord, thickness) = columns, table
+    (ahead, downwind, z, turn, pitch_axis), (radius, chord, thickness, polar_sets) = columns, table
+    sets = _profiles(path, lines, notes)
     eta = (z - z[0]) / (z[-1] - z[0])
     spans, lengths = curve_length(ahead, downwind, z)
     stated, measured = float(radius[-1]), float(lengths[-1])
@@ -101,6 +107,10 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
         notes.findings.append(axis_finding("c2_def", line))
     try:
         stations = placed or stations_by_thickness(_within(shapes, rthick, notes), rthick)
+        if sets:
+            stations = with_profiles(stations, sets, grid, polar_sets, rthick, notes)
+        elif len(set(polar_sets.tolist())) > 1:
+            notes.findings.append(Finding("ae", SEVERAL))
         return BladeDefinition(
             name=path.stem,
             stations=stations,
@@ -219,8 +229,8 @@ def _centreline(
     return x, y, z, twist, pitch_axis
 
 
-def _ae(path: Path, lines: list[_Line], notes: Notes) -> tuple[Array, Array, Array] | None:
-    """Return radius and chord [m] and thickness [%] of the blade's set of the ae file."""
+def _ae(path: Path, lines: list[_Line], notes: Notes) -> tuple[Array, ...] | None:
+    """Return radius and chord [m], thickness [%] and polar set of the blade's ae rows."""
     named = next((line for line in lines if line.words[0].lower() == "ae_filename"), None)
     sets = next((line for line in lines if line.words[0].lower() == "ae_sets"), None)
     wanted = number(sets.words[1]) if sets is not None and len(sets.words) > 1 else 1
@@ -251,7 +261,7 @@ def _ae(path: Path, lines: list[_Line], notes: Notes) -> tuple[Array, Array, Arr
 
 def _ae_set(
     name: str, text: list[str], first: int, count: int, notes: Notes
-) -> tuple[Array, Array, Array] | None:
+) -> tuple[Array, ...] | None:
     """Return the columns of one set of an ae file."""
     rows = [line.split() for line in text]
     short = [k for k, row in enumerate(rows) if len(row) < 3]
@@ -271,11 +281,23 @@ def _ae_set(
         return None
     if not rising(radius, places, "radius", notes):
         return None
-    if len({row[3] for row in rows if len(row) > 3}) > 1:
-        notes.findings.append(
-            Finding(name, "names several polar sets; shapes go by thickness alone")
-        )
-    return radius, chord, thickness
+    stated = [number(row[3]) if len(row) > 3 else 1.0 for row in rows]
+    sets = [value if value is not None and value in WHOLE else 0.0 for value in stated]
+    return radius, chord, thickness, np.array(sets)
+
+
+def _profiles(path: Path, lines: list[_Line], notes: Notes) -> list[list[Profile]]:
+    """Return the sets of the pc file that aero names; none if it is out of reach."""
+    named = next((line for line in lines if line.words[0].lower() == "pc_filename"), None)
+    name = named.words[1] if named is not None and len(named.words) > 1 else ""
+    if not name:
+        return []
+    found = referred(name, _bases(path))
+    if found is None:
+        said = f"{name[:60]!r} is no file below this folder; polars left out"
+        notes.findings.append(Finding("pc_filename", said))
+        return []
+    return profile_sets(found, notes)
 
 
 def _within(

@@ -50,7 +50,7 @@ FORMATS = (
     Format("windio2", "windIO 2", (".yaml", ".yml"), windio2.write, polars=True),
     Format("windio1", "windIO 1", (".yaml", ".yml"), windio1.write, polars=True),
     Format("openfast", "OpenFAST (AeroDyn blade)", (".dat",), openfast.write, polars=True),
-    Format("hawc2", "HAWC2", (".htc",), hawc2.write),
+    Format("hawc2", "HAWC2", (".htc",), hawc2.write, polars=True),
     Format("csv", "spanwise table (CSV)", (".csv",), spanwise_table.write),
     Format("xlsx", "spanwise table (IEA workbook)", (".xlsx",), spanwise_table.write),
     Format("selig", "a folder of airfoil files (Selig)", ("",), airfoil_files.write_selig),

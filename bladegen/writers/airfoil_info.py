@@ -17,7 +17,7 @@ from bladegen.definition import BladeDefinition
 from bladegen.estimates import chord_reynolds
 from bladegen.polars import Polar
 from bladegen.readers.airfoil_info import CONSTANTS, MILLION, UNKNOWN
-from bladegen.writers.text import aligned, exact
+from bladegen.writers.text import aligned, exact, one_line
 
 __all__ = ["Tables", "info", "part", "tables_at"]
 
@@ -109,7 +109,7 @@ def info(name: str, coordinates: str, thickness: float, tables: Tables) -> list[
     """
     lines = [
         "! ------------ AirfoilInfo v1.01.x Input File -----------------------------------",
-        f"! airfoil: {_line(name)}",
+        f"! airfoil: {one_line(name)}",
         "! written by bladegen; the source of each table stands before it",
         _entry("DEFAULT", "InterpOrd", "interpolation in the tables"),
         _entry(exact(round(thickness, 9)), "RelThickness", "thickness over chord"),
@@ -122,8 +122,8 @@ def info(name: str, coordinates: str, thickness: float, tables: Tables) -> list[
         lines += [
             f"! {'-' * 78}",
             f"! data for table {k + 1}",
-            *([f"! source: {_line(polar.source)}"] if polar.source else []),
-            f"! configuration: {_line(polar.configuration) or 'default'}",
+            *([f"! source: {one_line(polar.source)}"] if polar.source else []),
+            f"! configuration: {one_line(polar.configuration) or 'default'}",
             *([] if polar.reynolds else [f"! reynolds: {UNKNOWN}"]),
             *_table(polar, polar.reynolds or tables.reynolds),
         ]
@@ -185,8 +185,3 @@ def _entry(value: object, label: str, said: str = "") -> str:
     """Return a line of a value, its label and what it means."""
     line = f"{value!s:<{VALUE - 1}} {label:<{LABEL}}"
     return f"{line} ! {said}" if said else line.rstrip()
-
-
-def _line(text: str) -> str:
-    """Return a text on one line of printable letters."""
-    return " ".join("".join(c if c.isprintable() else " " for c in text).split())

@@ -1,8 +1,9 @@
-"""HAWC2: c2_def and aero of a blade in a partial htc file, its ae file, airfoils by thickness.
+"""HAWC2: c2_def and aero of a blade in a partial htc file, its ae and pc files, its airfoils.
 
-The files hold the geometry only; structure (st) and polars (pc) are the user's.  Conventions:
-`bladegen.readers.hawc2`.  HAWC2 has no place for the pitch axis, so it stands in comments behind
-the sections of c2_def, where our reader finds it again.
+Polars (pc) are written where all stations have some (`bladegen.writers.hawc2_polars`);
+structure (st) is the user's.  Conventions: `bladegen.readers.hawc2`.  HAWC2 has no place for
+the pitch axis, so it stands in comments behind the sections of c2_def, where our reader finds
+it again.
 """
 
 from itertools import pairwise
@@ -15,9 +16,10 @@ from bladegen.blade import Blade
 from bladegen.conventions import curve_length, line_of_axis
 from bladegen.definition import THICKNESS_RIPPLE, Airfoil, BladeDefinition, Station
 from bladegen.errors import Finding
-from bladegen.readers.hawc2 import AE_SUFFIX, HALF
+from bladegen.readers.hawc2 import AE_SUFFIX, HALF, PC_SUFFIX
 from bladegen.resampling import common_grid, shape_grid
 from bladegen.writers.airfoil_folder import write_airfoils
+from bladegen.writers.hawc2_polars import Sets, profile_sets
 from bladegen.writers.text import aligned, exact, write_lines
 
 __all__ = ["write"]
@@ -46,18 +48,26 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
     folder = write_airfoils(path, placed, placed=True, thickness=thickness)
     radius = np.interp(z, spans, lengths)
     ae = path.with_name(f"{path.stem}{AE_SUFFIX}")
-    write_lines(ae, _ae(radius, chord, rthick))
+    sets = profile_sets(definition, [(s.eta, s.airfoil.name) for s in stations], eta, rthick)
+    pc = path.with_name(f"{path.stem}{PC_SUFFIX}")
+    if sets is None:
+        pc.unlink(missing_ok=True)  # of a blade that had polars
+    else:
+        write_lines(pc, sets.lines)
+    write_lines(ae, _ae(radius, chord, rthick, [1] * len(eta) if sets is None else sets.numbers))
     centreline = np.stack([-y, x, z, -np.degrees(twist)], axis=1)
-    write_lines(path, _htc(definition, path, centreline, behind / chord))
+    named = "" if sets is None else pc.name
+    write_lines(path, _htc(definition, path, centreline, behind / chord, named))
     found = [
         Finding(
             "c2_def",
             f"{len(eta)} sections for all quantities; between them at most {loss * 1e3:.2f} mm off",
         ),
-        Finding("htc", "holds c2_def and aero only; structure (st) and polars (pc) are yours"),
+        Finding("htc", "holds c2_def and aero only; structure (st) is yours"),
         Finding("airfoils", f"HAWC2 has no shapes; they stand in {folder.name}"),
+        *_polar_findings(definition, stations, at, sets, pc.name),
     ]
-    return (*found, *_findings(definition, stations, at))
+    return (*found, *_findings(definition))
 
 
 def _shapes(definition: BladeDefinition, eta: Array) -> tuple[Array, Array, tuple[Station, ...]]:
@@ -80,7 +90,7 @@ def _shapes(definition: BladeDefinition, eta: Array) -> tuple[Array, Array, tupl
 
 
 def _htc(
-    definition: BladeDefinition, path: Path, centreline: Array, pitch_axis: Array
+    definition: BladeDefinition, path: Path, centreline: Array, pitch_axis: Array, pc: str
 ) -> list[str]:
     """Return the lines of the htc file."""
     title = " ".join((definition.description or definition.name).split())
@@ -90,7 +100,7 @@ def _htc(
     ]
     return [
         f"; {title}: the geometry of its blade; written by bladegen",
-        "; a part of an htc file, to be taken into your own: structure and polars are not in it",
+        "; a part of an htc file, to be taken into your own: structure is not in it",
         "; x to the leading edge, y downwind, z to the tip [m], of the half chord; twist [deg]",
         "begin main_body;",
         "    name blade1 ;",
@@ -105,27 +115,49 @@ def _htc(
         f"    nblades {definition.rotor.blades} ;",
         *(f"    link {k + 1} mbdy_c2_def blade{k + 1} ;" for k in range(definition.rotor.blades)),
         f"    ae_filename ./{path.stem}{AE_SUFFIX} ;",
+        *([f"    pc_filename ./{pc} ;"] if pc else []),
         f"    ae_sets {' '.join(['1'] * definition.rotor.blades)} ;",
         "end aero ;",
         "exit ;",
     ]
 
 
-def _ae(radius: Array, chord: Array, thickness: Array) -> list[str]:
+def _ae(radius: Array, chord: Array, thickness: Array, numbers: list[int]) -> list[str]:
     """Return the lines of the ae file: one set."""
     rows = np.stack([radius, chord, 100.0 * thickness], axis=1).tolist()
     return [
         "1 radius [m] along the half chord, chord [m], thickness [%], polar set",
         f"1 {len(rows)}",
-        *(f"{aligned(row)} 1" for row in rows),
+        *(f"{aligned(row)} {k}" for row, k in zip(rows, numbers, strict=True)),
     ]
 
 
-def _findings(
-    definition: BladeDefinition, stations: tuple[Station, ...], at: dict[float, float]
+def _polar_findings(
+    definition: BladeDefinition,
+    stations: tuple[Station, ...],
+    at: dict[float, float],
+    sets: Sets | None,
+    pc: str,
 ) -> list[Finding]:
-    """Say what HAWC2 has no place for."""
-    found = [Finding("pitch axis", "HAWC2 has none; it stands in comments of c2_def")]
+    """Say what became of the polars, or what those that are yours must have."""
+    if sets is not None:
+        several = {
+            station.airfoil.name
+            for station in definition.stations
+            if len(station.airfoil.polars) > 1
+        }
+        said = [f"{sets.count} sets in {pc}"]
+        if sets.count > 1:
+            said.append("one where thickness turns or stays and polars change; ae names them")
+        if several:
+            said.append(f"of several Reynolds numbers the one nearest the chord's: {_few(several)}")
+        if sets.moved:
+            said.append(f"moments brought to the quarter chord: {_few(set(sets.moved))}")
+        return [Finding("pc", "; ".join(said))]
+    bare = {s.airfoil.name for s in definition.stations if not s.airfoil.polars}
+    every = all(not s.airfoil.polars for s in definition.stations)
+    why = "there are none" if every else f"{_few(bare)} have none"
+    found = [Finding("pc", f"polars are not written: {why}; yours must be by thickness")]
     alike: set[str] = set()
     for one, other in pairwise(stations):
         same = one.airfoil is other.airfoil or np.array_equal(
@@ -134,14 +166,23 @@ def _findings(
         if not same and at[one.eta] - at[other.eta] < THICKNESS_RIPPLE:
             alike.add(other.airfoil.name)
     if alike:
-        shown = ", ".join(sorted(alike)[:SHOWN]) + (" and more" if len(alike) > SHOWN else "")
         found.append(
             Finding(
                 "airfoils",
-                f"not thinner than their inner neighbours: {shown}; HAWC2 tells polars by "
+                f"not thinner than their inner neighbours: {_few(alike)}; HAWC2 tells polars by "
                 "thickness alone, so these need a polar set of their own",
             )
         )
+    return found
+
+
+def _few(names: set[str]) -> str:
+    return ", ".join(sorted(names)[:SHOWN]) + (" and more" if len(names) > SHOWN else "")
+
+
+def _findings(definition: BladeDefinition) -> list[Finding]:
+    """Say what HAWC2 has no place for."""
+    found = [Finding("pitch axis", "HAWC2 has none; it stands in comments of c2_def")]
     if definition.section_offset_x is not None:
         found.append(Finding("section_offset_x", "goes into the half-chord line"))
     if definition.rotor.hub_radius is not None:

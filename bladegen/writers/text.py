@@ -5,7 +5,7 @@ from pathlib import Path
 
 from bladegen.files import replacing
 
-__all__ = ["aligned", "exact", "write_lines"]
+__all__ = ["aligned", "exact", "one_line", "write_lines"]
 
 WIDTH = 23  # of "-1.2345678901234567e-123"
 
@@ -21,6 +21,11 @@ def aligned(values: Iterable[float | str]) -> str:
         f"{value if isinstance(value, str) else format(value + 0.0, '.16e'):>{WIDTH}}"
         for value in values
     )
+
+
+def one_line(text: str) -> str:
+    """Return a text on one line of printable letters."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def write_lines(path: Path, lines: Sequence[str]) -> None:

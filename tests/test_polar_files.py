@@ -1,0 +1,548 @@
+"""Polars in the files of OpenFAST and HAWC2: what goes out, and what comes back."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from shutil import copytree
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+from refusals import findings, problems
+from typer.testing import CliRunner
+
+import bladegen as bg
+from bladegen import cli
+from bladegen.blending import Between, between, completed, of_their_own
+from bladegen.definition import Airfoil, BladeDefinition, Distribution, Station
+from bladegen.polars import BORROWED, Polar
+from bladegen.readers.airfoil_info import Columns
+from bladegen.readers.airfoil_info import polars as read_tables
+from bladegen.readers.document import Notes
+from bladegen.readers.hawc2_polars import profile_sets as read_sets
+from strategies import naca
+
+ALPHA = np.radians(np.arange(-180.0, 181.0, 20.0))
+
+
+def polar(lift: float = 1.0, **changes) -> Polar:
+    """A polar with the lift of a plate."""
+    drag = 0.01 + lift * np.sin(ALPHA) ** 2
+    return Polar(ALPHA, lift * np.sin(2.0 * ALPHA), drag, -0.1 * lift * np.sin(ALPHA), **changes)
+
+
+@cache
+def with_polars(*reynolds: float | None, name: str = "nrel5mw", **changes: Any) -> BladeDefinition:
+    """A bundled blade, the lift of its airfoils growing from root to tip."""
+    plain = bg.read(name)
+    made: dict[str, Airfoil] = {}
+    for k, station in enumerate(plain.stations):
+        own = tuple(polar(1.0 + 0.1 * k, reynolds=re, **changes) for re in reynolds)
+        made.setdefault(station.airfoil.name, replace(station.airfoil, polars=own))
+    stations = tuple(Station(s.eta, made[s.airfoil.name]) for s in plain.stations)
+    return replace(plain, stations=stations)
+
+
+def lift(definition: BladeDefinition, eta: float, alpha: float = np.radians(20.0)) -> float:
+    """The lift at an angle, blended as the blade's polars are."""
+    (found, *_) = between(definition, eta).polars()
+    return float(found.at(np.array([alpha]))[0][0])
+
+
+# ---- between airfoils ----------------------------------------------------------------------------
+
+
+@given(st.floats(0.0, 1.0))
+def test_polars_between_stations_follow_the_thickness(eta):
+    blade = with_polars(4e6)
+    place = between(blade, eta)
+    assert blade.relative_thickness is not None
+    ends = [a.relative_thickness or 1.0 for a in (place.one, place.other)]
+    here = float(blade.relative_thickness(eta))
+    assert (1.0 - place.weight) * ends[0] + place.weight * ends[1] == pytest.approx(here, abs=2e-3)
+    parts = [a.polars[0].at(ALPHA)[0] for a in (place.one, place.other)]
+    mixed = place.polars()[0].at(ALPHA)[0]
+    assert_allclose(mixed, (1.0 - place.weight) * parts[0] + place.weight * parts[1], atol=1e-12)
+
+
+def test_a_station_keeps_its_own_polars_and_blends_bear_the_worst_mark():
+    blade = with_polars(4e6)
+    for station in blade.stations:
+        assert between(blade, station.eta).polars() is station.airfoil.polars
+    plain, guess, lent = (
+        Airfoil(source, naca(0.2, 0, 0), polars=(polar(source=source),))
+        for source in ("tunnel", "estimate: by hand", f"{BORROWED}, not of this shape: x")
+    )
+    (mixed,) = Between(plain, guess, 0.25).polars()
+    assert mixed.source == (
+        "estimate: by hand; between tunnel and estimate: by hand, 25 % of the latter"
+    )
+    assert mixed.is_estimate
+    assert Between(guess, lent, 0.9).polars()[0].is_borrowed
+    (same,) = Between(plain, replace(plain, name="other"), 0.5).polars()
+    assert same.source == "tunnel; between tunnel and other, 50 % of the latter"
+    assert Between(plain, replace(plain, polars=()), 0.5).polars() == ()
+    assert of_their_own(plain.polars)
+    assert not of_their_own(())
+    assert not any(of_their_own(one.polars) for one in (guess, lent))
+
+
+@given(st.floats(-60.0, -4.0), st.floats(4.0, 60.0))
+def test_a_completed_polar_reaches_round_and_keeps_what_was_given(low, high):
+    alpha = np.radians(np.linspace(low, high, 30))
+    part = Polar(alpha, 5.0 * alpha, 0.01 + alpha**2, 0 * alpha, source="tunnel")
+    whole = completed(part)
+    assert_allclose(whole.alpha[[0, -1]], [-np.pi, np.pi], rtol=0, atol=0)
+    for one, other in zip(whole.at(alpha), (part.cl, part.cd, part.cm), strict=True):
+        assert_allclose(one, other, atol=1e-12)
+    assert whole.source.startswith("tunnel; Viterna beyond ")
+    assert completed(whole) is whole
+
+
+def test_a_table_that_all_but_reaches_round_is_drawn_out_without_a_word():
+    alpha = np.radians(np.array([-179.5, 0.0, 179.5]))
+    part = Polar(alpha, np.array([0.1, 0.2, 0.3]), np.ones(3), np.zeros(3))
+    whole = completed(part)
+    assert_allclose(whole.cl, [0.1, 0.1, 0.2, 0.3, 0.3])
+    assert whole.source == ""
+    half = completed(Polar(alpha[1:], np.array([0.2, 0.3]), np.ones(2), np.zeros(2)))
+    assert_allclose(half.cl[[0, -1]], [0.2, 0.3])
+    assert half.source == "end values beyond 0 to 179.5 deg"
+
+
+# ---- OpenFAST ------------------------------------------------------------------------------------
+
+
+def rows_of(path: Path) -> list[tuple[str, str]]:
+    """The values of an airfoil file with their labels, as AeroDyn reads them."""
+    lines = [line.split() for line in path.read_text().splitlines() if line[:1] != "!"]
+    return [(words[1], words[0]) for words in lines if len(words) > 1 and not words[1][0].isdigit()]
+
+
+def test_airfoil_files_have_aerodyns_layout(tmp_path):
+    blade = with_polars(9e6, 3e6, parameters=(("aoa0", -2.5), ("eta_e", 1.0)))
+    bg.write(blade, tmp_path / "blade.dat")
+    folder = tmp_path / "blade_dat_airfoils"
+    found = rows_of(folder / "blade_AF009.dat")
+    labels = [label for label, _ in found if not label.startswith("-")]
+    head = ["InterpOrd", "RelThickness", "NonDimArea", "NumCoords", "BL_file", "NumTabs"]
+    assert labels[:6] == head
+    constants = (
+        *("alpha0", "alpha1", "alpha2", "eta_e", "C_nalpha", "T_f0", "T_V0", "T_p", "T_VL"),
+        *("b1", "b2", "b5", "A1", "A2", "A5", "S1", "S2", "S3", "S4", "Cn1", "Cn2", "St_sh"),
+        *("Cd0", "Cm0", "k0", "k1", "k2", "k3", "k1_hat", "x_cp_bar", "UACutout", "filtCutOff"),
+    )
+    assert labels[6:] == ["Re", "UserProp", "InclUAdata", *constants, "NumAlf"] * 2
+    values = dict(found)
+    assert values["NumCoords"] == '@"blade_AF009_Coords.txt"'
+    assert [value for label, value in found if label == "Re"] == ["3.0", "9.0"]
+    assert (values["alpha0"], values["eta_e"], values["alpha1"]) == ("-2.5", "1.0", "DEFAULT")
+    assert values["NumAlf"] == str(len(ALPHA))
+    part = (tmp_path / "blade_AeroDyn_part.dat").read_text()
+    assert "2                       AFTabMod" in part
+    assert part.count("blade_dat_airfoils/blade_AF") == len(list(folder.glob("*_Coords.txt")))
+    assert '"blade.dat"             ADBlFile(3)' in part
+
+
+def test_polars_come_back_from_openfast(tmp_path):
+    blade = with_polars(9e6, 3e6, parameters=(("aoa0", -2.5), ("cn1", 1.5)), source="tunnel")
+    bg.write(blade, tmp_path / "blade.dat")
+    again = bg.read(tmp_path / "blade.dat")
+    assert not [finding for finding in again.findings if "polars" in str(finding)]
+    for eta in (0.0, 0.1, 0.3, 0.65, 1.0):
+        assert lift(again, eta) == pytest.approx(lift(blade, eta), abs=0.01)
+    mine, own = again.stations[-1].airfoil, blade.stations[-1].airfoil
+    assert [p.reynolds for p in mine.polars] == [3e6, 9e6]
+    assert_allclose(mine.polars[1].alpha, own.polars[0].alpha, rtol=0, atol=1e-15)
+    assert_array_equal(mine.polars[1].cm, own.polars[0].cm)
+    assert dict(mine.polars[1].parameters) == {"aoa0": -2.5, "cn1": 1.5}
+    assert mine.polars[0].source == "tunnel"
+    assert mine.aerodynamic_center == pytest.approx(own.aerodynamic_center)
+
+
+def test_published_polars_bring_their_reference_point(tmp_path):
+    blade = with_polars(4e6)
+    centres = {station.airfoil.aerodynamic_center for station in blade.stations}
+    assert centres == {0.5, 0.275}
+    bg.write(blade, tmp_path / "own.dat")
+    said = (tmp_path / "own_dat_airfoils" / "own_AF100_Coords.txt").read_text().splitlines()
+    assert float(said[3].split()[0]) == 0.275
+    bg.write(with_polars(4e6, source="estimate: x"), tmp_path / "made.dat")
+    said = (tmp_path / "made_dat_airfoils" / "made_AF100_Coords.txt").read_text().splitlines()
+    assert float(said[3].split()[0]) == 0.25
+
+
+def test_nodes_of_one_shape_and_two_polars_have_two_files(tmp_path):
+    plain = with_polars(4e6)
+    root = plain.stations[0].airfoil
+    stations = (plain.stations[0], Station(0.01, replace(root, polars=(polar(9.0),))))
+    bg.write(replace(plain, stations=(*stations, *plain.stations[1:])), tmp_path / "blade.dat")
+    again = bg.read(tmp_path / "blade.dat")
+    assert lift(again, 0.01) == pytest.approx(9.0 * np.sin(np.radians(40.0)))
+    assert lift(again, 0.0) == pytest.approx(np.sin(np.radians(40.0)))
+
+
+def test_an_unknown_reynolds_number_stays_unknown(tmp_path):
+    bg.write(with_polars(None), tmp_path / "blade.dat")
+    text = (tmp_path / "blade_dat_airfoils" / "blade_AF001.dat").read_text()
+    assert "! reynolds: unknown" in text
+    assert bg.read(tmp_path / "blade.dat").stations[0].airfoil.polars[0].reynolds is None
+    first, other = polar(configuration="clean"), polar(2.0, configuration="rough")
+    plain = bg.read("nrel5mw")
+    two = tuple(Station(s.eta, replace(s.airfoil, polars=(first, other))) for s in plain.stations)
+    said = bg.write(replace(plain, stations=two), tmp_path / "blade.dat")
+    assert "of the first configuration alone: Cylinder1, " in " ".join(map(str, said))
+    assert bg.read(tmp_path / "blade.dat").stations[0].airfoil.polars[0].configuration == "clean"
+
+
+def test_polars_that_go_leave_no_files_behind(tmp_path):
+    blade = with_polars(4e6)
+    for suffix in ("dat", "htc"):
+        bg.write(blade, tmp_path / f"blade.{suffix}")
+    bg.write(blade, tmp_path / "blade.dat", polars="none")
+    bg.write(blade, tmp_path / "blade.htc", polars="none")
+    left = {path.name for path in tmp_path.rglob("*") if path.is_file()}
+    assert not left & {"blade_AeroDyn_part.dat", "blade_AF001.dat", "blade_pc.dat"}
+    assert not any(s.airfoil.polars for s in bg.read(tmp_path / "blade.dat").stations)
+    some = replace(blade, stations=(bg.read("nrel5mw").stations[0], *blade.stations[1:]))
+    for suffix in ("dat", "htc"):
+        said = " ".join(map(str, bg.write(some, tmp_path / f"blade.{suffix}")))
+        assert "polars are not written: Cylinder1 have none" in said
+
+
+TABLE = """! source: a tunnel
+! configuration: rough
+1.5  Re
+0 UserProp
+False InclUAdata
+3 NumAlf
+-180 0 1 0
+0 0.5 0.01 -0.1
+180 0 1 0
+"""
+
+
+def test_tables_of_others_are_read():
+    text = TABLE.replace("0 0.5 0.01 -0.1", "0 -0.1 0.01 0.5 ! a comment").splitlines()
+    notes = Notes()
+    (made,) = read_tables(text, "file", notes, Columns(1, 4, 3, 2))
+    assert (made.cl[1], made.cm[1], made.reynolds) == (0.5, -0.1, 1.5e6)
+    assert (made.source, made.configuration) == ("a tunnel", "rough")
+    (bare,) = read_tables(TABLE.splitlines(), "file", notes, Columns(cm=0))
+    assert not bare.cm.any()
+    assert not notes.findings
+    assert read_tables(["no tables"], "file", notes) == ()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("3 NumAlf", "many NumAlf", "NumAlf: got 'many', allowed is 2 to 10000"),
+        ("3 NumAlf", "4 NumAlf", "the last table ends 1 rows before NumAlf"),
+        ("0 0.5 0.01", "0 x 0.01", "row 2 of a table: got '0 x 0.01 -0.1', must be 4 numbers"),
+        ("0 0.5 0.01", "0 500 0.01", "Cl: allowed is -100 to 100"),
+        ("180 0 1 0\n", "181 0 1 0\n", "alpha: allowed is -180"),
+        ("0 0.5", "-180 0.5", "alpha must increase strictly"),
+        ("1.5 ", "1e9 ", "Re: got 1e+09 millions"),
+    ],
+)
+def test_tables_that_cannot_be_read_are_left_out_and_said(old, new, said):
+    assert old in TABLE
+    notes = Notes()
+    text = "180 0 1 0\n".join(TABLE.replace(old, new, 1).rsplit("180 0 1 0\n", 1))
+    if old == "180 0 1 0\n":
+        text = "181 0 1 0\n".join(TABLE.rsplit(old, 1))
+    assert read_tables(text.splitlines(), "file", notes) == ()
+    assert said in str(notes.findings[0])
+    assert "file: polars left out" in str(notes.findings[0])
+
+
+# ---- a turbine's .fst file ----------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory) -> Path:
+    """A model in the folders of published ones: files of several turbines in a folder beside."""
+    folder = tmp_path_factory.mktemp("model")
+    (folder / "Shared").mkdir()
+    (folder / "Land").mkdir()
+    bg.write(with_polars(4e6), folder / "Shared" / "blade.dat")
+    part = (folder / "Shared" / "blade_AeroDyn_part.dat").read_text()
+    for name in ('"blade.dat"', '"blade_dat_airfoils'):
+        part = part.replace(name, f'"../Shared/{name[1:]}')
+    (folder / "Land" / "AeroDyn.dat").write_text(part)
+    (folder / "Land" / "ElastoDyn.dat").write_text(
+        "2 NumBl - blades\n63.0 TipRad - m\n1.5 HubRad - m\n-2.5 PreCone(1) - deg\n"
+        "-5.0 ShftTilt - deg\n"
+    )
+    (folder / "Land" / "turbine.fst").write_text(
+        "--- OpenFAST INPUT FILE ---\n2 CompAero - aerodynamics\n"
+        '"ElastoDyn.dat"    EDFile    - structure\n"AeroDyn.dat"  AeroFile - aerodynamics\n'
+    )
+    return folder
+
+
+@pytest.fixture
+def turbine(model, tmp_path) -> Path:
+    """The model's .fst file, in a folder of its own."""
+    copytree(model, tmp_path / "model")
+    return tmp_path / "model" / "Land" / "turbine.fst"
+
+
+def test_a_turbine_file_leads_to_its_blade(turbine):
+    made = bg.read(turbine)
+    assert (made.name, made.format) == ("turbine", "OpenFAST")
+    assert (made.rotor.blades, made.rotor.hub_radius, made.rotor.diameter) == (2, 1.5, 126.0)
+    assert made.rotor.cone == pytest.approx(np.radians(2.5))
+    assert made.rotor.tilt == pytest.approx(np.radians(5.0))
+    assert lift(made, 0.5) == pytest.approx(lift(with_polars(4e6), 0.5), abs=0.01)
+    assert "TipRad" not in findings(made)
+    result = CliRunner().invoke(cli.app, ["info", str(turbine)])
+    assert result.exit_code == 0, result.output
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "said"),
+    [
+        ("turbine.fst", '"AeroDyn.dat"', '"../../x.dat"', "AeroFile: got '../../x.dat', must be"),
+        ("turbine.fst", '"AeroDyn.dat"', '"unused"', "AeroFile: got 'unused', must be AeroDyn's"),
+        ("turbine.fst", '"AeroDyn.dat"', '"ElastoDyn.dat"', "(with ADBlFile(1))"),
+        ("turbine.fst", "AeroFile", "Aero", "AeroFile: got 'nothing'"),
+        ("AeroDyn.dat", '"../Shared/blade.dat', '"../../blade.dat', "ADBlFile(1): got '../../bl"),
+        ("AeroDyn.dat", '"../Shared/blade_dat_', '"../../b_', "AFNames, entry 1: '../../b_"),
+    ],
+)
+def test_turbine_files_lead_nowhere_else(tmp_path, turbine, file, old, new, said):
+    for name in ("x.dat", "blade.dat"):
+        (tmp_path / name).write_text("secret")
+    edit(turbine.with_name(file), old, new)
+    assert said in problems(turbine)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "said"),
+    [
+        ("turbine.fst", "ElastoDyn.dat", "../../x.dat", "EDFile: '../../x.dat' is no file in "),
+        ("ElastoDyn.dat", "63.0 TipRad", "73.0 TipRad", "TipRad, HubRad: of ElastoDyn are 71.5 m"),
+        ("ElastoDyn.dat", "1.5 HubRad", "-1 HubRad", "EDFile, HubRad: got '-1', allowed is 0 to"),
+        ("ElastoDyn.dat", "-5.0 ShftTilt", "-5.0 Tilt", "EDFile, ShftTilt: is missing; passed"),
+    ],
+)
+def test_what_is_odd_in_a_rotor_is_said(turbine, file, old, new, said):
+    edit(turbine.with_name(file), old, new)
+    assert said in findings(bg.read(turbine))
+
+
+def test_columns_of_airfoil_tables_are_those_of_the_main_input(turbine):
+    path = turbine
+    edit(path.with_name("AeroDyn.dat"), "4                       InCol_Cm", "0 InCol_Cm")
+    assert not bg.read(path).stations[3].airfoil.polars[0].cm.any()
+    edit(path.with_name("AeroDyn.dat"), "0 InCol_Cm", "99 InCol_Cm")
+    assert bg.read(path).stations[3].airfoil.polars[0].cm.any()
+
+
+# ---- HAWC2 ---------------------------------------------------------------------------------------
+
+
+def published(sets: list[list[tuple[float, float]]]) -> str:
+    """A pc file as people write them: sets of (thickness, lift)."""
+    lines = [f"{len(sets)} sets"]
+    for profiles in sets:
+        lines.append(f"{len(profiles)} profiles")
+        for k, (thickness, height) in enumerate(profiles):
+            lines.append(f"{k + 1} 3 {thickness} Some foil (Re=12x10^6)")
+            lines += ["-180 0 0.1 0", f"0 {height} 0.1 0", "180 0 0.1 0", ""]
+    return "\n".join(lines)
+
+
+def pc(path: Path) -> list[list[tuple[float, np.ndarray]]]:
+    """The sets of a pc file by a reader of its own: thickness and table of each profile."""
+    lines = iter(path.read_text().splitlines())
+    sets = []
+    for _ in range(int(next(lines).split()[0])):
+        profiles = []
+        for k in range(int(next(lines))):
+            number, rows, thickness = next(lines).split()[:3]
+            assert int(number) == k + 1
+            table = [[float(word) for word in next(lines).split()] for _ in range(int(rows))]
+            profiles.append((float(thickness), np.array(table)))
+        sets.append(profiles)
+    assert next(lines, None) is None
+    return sets
+
+
+def hawc2_lift(folder: Path, eta: float, alpha: float = 20.0) -> float:
+    """The lift that HAWC2 finds: linear in radius for the thickness, in thickness for lift."""
+    rows = np.loadtxt(folder / "blade_ae.dat", skiprows=2)
+    radius = eta * rows[-1, 0]
+    thickness = np.interp(radius, rows[:, 0], rows[:, 2])
+    number = int(rows[np.searchsorted(rows[:, 0], radius, side="right") - 1, 3])
+    profiles = pc(folder / "blade_pc.dat")[number - 1]
+    heights = [np.interp(alpha, table[:, 0], table[:, 1]) for _, table in profiles]
+    return float(np.interp(thickness, [thick for thick, _ in profiles], heights))
+
+
+def test_hawc2_finds_the_polars_that_the_blade_has(tmp_path):
+    blade = with_polars(4e6)
+    bg.write(blade, tmp_path / "blade.htc")
+    assert "pc_filename ./blade_pc.dat ;" in (tmp_path / "blade.htc").read_text()
+    for eta in np.linspace(0.03, 1.0, 30):
+        assert hawc2_lift(tmp_path, eta) == pytest.approx(lift(blade, float(eta)), abs=2e-3)
+    for profiles in pc(tmp_path / "blade_pc.dat"):
+        thicknesses = [thickness for thickness, _ in profiles]
+        assert np.all(np.diff(thicknesses) > 0)
+        assert 100.0 in thicknesses
+        for _, table in profiles:
+            assert_array_equal(table[[0, -1], 0], [-180.0, 180.0])
+    rows = np.loadtxt(tmp_path / "blade_ae.dat", skiprows=2)
+    for number, profiles in enumerate(pc(tmp_path / "blade_pc.dat"), start=1):
+        used = rows[rows[:, 3] == number, 2]
+        assert used.min() >= profiles[0][0]
+        assert used.max() <= profiles[-1][0] + 1e-9
+
+
+def test_polars_come_back_from_hawc2(tmp_path):
+    blade = with_polars(9e6, 3e6, source="of the baseline, not of this shape: x")
+    said = " ".join(map(str, bg.write(blade, tmp_path / "blade.htc")))
+    assert "of several Reynolds numbers the one nearest the chord's" in said
+    again = bg.read(tmp_path / "blade.htc")
+    assert "polars" not in findings(again)
+    for mine, own in zip(again.stations, blade.stations, strict=True):
+        (only,) = mine.airfoil.polars
+        assert only.reynolds in (9e6, 3e6)
+        assert only.is_borrowed
+        assert_allclose(only.at(ALPHA)[0], own.airfoil.polars[0].cl, rtol=0, atol=1e-12)
+        assert mine.airfoil.aerodynamic_center == 0.25
+
+
+@settings(max_examples=5, deadline=None)
+@given(st.lists(st.sampled_from([0.18, 0.21, 0.3, 0.4, 0.6, 1.0]), min_size=2, max_size=5))
+def test_thickness_may_turn_and_stay(tmp_path_factory, thicknesses):
+    """Whatever the thickness does, each station gets its own polar."""
+    folder = tmp_path_factory.mktemp("pc")
+    plain = bg.read("nrel5mw")
+    grid = np.linspace(0.0, 1.0, len(thicknesses))
+    airfoils = [
+        Airfoil(f"foil {k}", naca(0.2, 0.0, 0.0), 0.2, (polar(1.0 + k, reynolds=4e6),))
+        for k in range(len(grid))
+    ]
+    blade = replace(
+        plain,
+        stations=tuple(Station(float(e), a) for e, a in zip(grid, airfoils, strict=True)),
+        relative_thickness=Distribution(grid, np.array(thicknesses)),
+    )
+    bg.write(blade, folder / "blade.htc")
+    again = bg.read(folder / "blade.htc")
+    for k, station in enumerate(again.stations):
+        found = station.airfoil.polars[0].at(ALPHA)[0]
+        assert_allclose(found, polar(1.0 + k).cl, rtol=0, atol=1e-9)
+    for profiles in pc(folder / "blade_pc.dat"):
+        assert len(profiles) > 1
+        assert np.all(np.diff([thickness for thickness, _ in profiles]) > 0)
+
+
+def test_moments_go_about_the_quarter_chord(tmp_path):
+    """A cylinder's drag acts at half chord: about the quarter chord it has a moment."""
+    plain = bg.read("nrel5mw")
+    ends = np.radians([-180.0, 180.0])
+    drag = Polar(ends, np.zeros(2), np.full(2, 0.5), np.zeros(2), reynolds=1e6)
+    stations = tuple(
+        Station(s.eta, replace(s.airfoil, polars=(drag,), aerodynamic_center=0.5))
+        for s in plain.stations
+    )
+    said = bg.write(replace(plain, stations=stations), tmp_path / "blade.htc")
+    assert "moments brought to the quarter chord: Cylinder1" in " ".join(map(str, said))
+    table = pc(tmp_path / "blade_pc.dat")[0][-1][1]
+    assert_allclose(table[:, 3], -0.25 * 0.5 * np.sin(np.radians(table[:, 0])), atol=1e-12)
+    guess = replace(drag, source="estimate: x")
+    stations = tuple(Station(s.eta, replace(s.airfoil, polars=(guess,))) for s in plain.stations)
+    bg.write(replace(plain, stations=stations), tmp_path / "blade.htc")
+    assert not pc(tmp_path / "blade_pc.dat")[0][-1][1][:, 3].any()
+
+
+def edited(folder: Path, text: str, number: int = 1) -> BladeDefinition:
+    """A blade in HAWC2's files with another pc file, and that set at all stations."""
+    bg.write(with_polars(4e6), folder / "blade.htc")
+    (folder / "blade_pc.dat").write_text(text)
+    ae = (folder / "blade_ae.dat").read_text().splitlines()
+    rows = [" ".join([*line.split()[:3], str(number)]) for line in ae[2:]]
+    (folder / "blade_ae.dat").write_text("\n".join([*ae[:2], *rows]))
+    return bg.read(folder / "blade.htc")
+
+
+def test_pc_files_of_others_are_read(tmp_path):
+    known = [(12.0, 0.2), (21.0, 1.0), (40.0, 2.0), (100.0, 0.0)]
+    made = edited(tmp_path, published([[(1.0, 9.0), (2.0, 9.0)], known]), 2)
+    heights = [float(s.airfoil.polars[0].at(np.zeros(1))[0][0]) for s in made.stations]
+    assert made.relative_thickness is not None
+    thickness = 100.0 * made.relative_thickness(np.array([s.eta for s in made.stations]))
+    assert_allclose(heights, np.interp(thickness, *np.array(known).T), atol=1e-2)
+    assert "Some foil (Re=12x10^6)" in made.stations[-1].airfoil.polars[0].source
+    said = findings(edited(tmp_path, published([[(12.0, 0.2), (30.0, 1.0)]])))
+    assert "pc: holds no polars as thick as " in said
+    assert "holds no polars as thick as" in findings(edited(tmp_path, published([known]), 7))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("1 sets", "0 sets", "line 1, number of sets: got '0', allowed is 1 to 1000"),
+        ("2 profiles", "x", "line 2, number of profiles of a set: got 'x'"),
+        ("2 profiles", "3 profiles", "the file ends early"),
+        ("1 3 20", "1 3 200.5", "line 3: thickness 200.5, allowed is 0 to 200 %"),
+        ("1 3 20", "1 3 100", "thickness 100 follows 100, must increase within a set"),
+        ("1 3 20", "1 3", "line 3: must be number, rows (2 to 10000), thickness"),
+        ("0 0.5 0.1 0", "0 0.5 0.1", "line 5: must be alpha, Cl, Cd, Cm"),
+        ("0 0.5 0.1 0", "0 nan 0.1 0", "line 3: allowed are angles from -180 to 180 deg"),
+        ("0 0.5 0.1 0", "-180 0.5 0.1 0", "line 3: alpha must increase strictly"),
+    ],
+)
+def test_pc_files_that_cannot_be_read_are_left_out_and_said(tmp_path, old, new, said):
+    text = published([[(20.0, 0.5), (100.0, 0.0)]]).replace("1 3 20.0", "1 3 20")
+    assert old in text
+    path = tmp_path / "pc.dat"
+    path.write_text(text.replace(old, new, 1))
+    notes = Notes()
+    assert read_sets(path, notes) == []
+    assert said in str(notes.findings[0])
+    assert not notes.problems
+
+
+def test_a_pc_file_out_of_reach_is_said(tmp_path):
+    bg.write(with_polars(4e6), tmp_path / "blade.htc")
+    edit(tmp_path / "blade.htc", "./blade_pc.dat", "../blade_pc.dat")
+    made = bg.read(tmp_path / "blade.htc")
+    assert "pc_filename: '../blade_pc.dat' is no file below this folder" in findings(made)
+    assert not made.stations[0].airfoil.polars
+    notes = Notes()
+    assert read_sets(tmp_path, notes) == []
+    assert "is no regular file" in str(notes.findings[0])
+
+
+# ---- on the command line -------------------------------------------------------------------------
+
+
+def test_the_option_polars_rules_openfast_and_hawc2(tmp_path, monkeypatch):
+    pytest.importorskip("neuralfoil")
+    monkeypatch.setattr("bladegen.estimates.MODEL", "xxsmall")  # quick
+    run = CliRunner().invoke
+    for suffix in ("dat", "htc"):
+        target = str(tmp_path / f"blade.{suffix}")
+        result = run(cli.app, ["convert", "nrel5mw", target, "--polars", "estimate"])
+        assert result.exit_code == 0, result.output
+        said = " ".join(result.output.split())
+        assert ("blade_AeroDyn_part.dat" if suffix == "dat" else "sets in blade_pc.dat") in said
+        made = bg.read(target)
+        assert all(s.airfoil.polars[0].is_estimate for s in made.stations)
+        result = run(cli.app, ["convert", "nrel5mw", target, "--polars", "keep"])
+        assert "polars are not written: there are none" in " ".join(result.output.split())
+        assert not any(s.airfoil.polars for s in bg.read(target).stations)

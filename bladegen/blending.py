@@ -46,6 +46,14 @@ class Between:
         return self.one if self.weight < 0.5 else self.other
 
     @property
+    def centre(self) -> float | None:
+        """What polars there are about, of the chord from the leading edge; None if not known."""
+        inner, outer = self.one.aerodynamic_center, self.other.aerodynamic_center
+        if inner is None or outer is None or self.weight in ENDS:
+            return self.near.aerodynamic_center
+        return (1.0 - self.weight) * inner + self.weight * outer
+
+    @property
     def said(self) -> str:
         """The airfoils by name, and how much of which."""
         if self.one is self.other or self.weight in ENDS:

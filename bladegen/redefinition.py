@@ -172,7 +172,7 @@ class _Shapes:
     def _polars(self, eta: float) -> tuple[tuple[Polar, ...], float | None]:
         """Return the baseline's polars and aerodynamic centre there, marked as the baseline's."""
         found = between(self.blade.definition, eta)
-        return found.polars(f"{BORROWED}, not of this shape"), found.near.aerodynamic_center
+        return found.polars(f"{BORROWED}, not of this shape"), found.centre
 
     def _changed(self, eta: Array) -> Mask:
         plain, X, _, _ = self.blade.shapes(eta)

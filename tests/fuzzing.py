@@ -39,6 +39,7 @@ from bladegen.exporters import Options
 from bladegen.files import safe_stem
 from bladegen.landmarks import landmarks
 from bladegen.planform import normal_to_axis, normal_to_z
+from bladegen.polars import Polar
 from bladegen.readers.airfoil_files import read_airfoil
 from bladegen.readers.yaml_file import parse_yaml
 from strategies import naca
@@ -398,6 +399,65 @@ def answer_other(path: Path, out: Path, rng: Random) -> str:
     return outcome
 
 
+# ---- polars in files of OpenFAST and HAWC2, and models that lead to a blade ---------------------
+
+PLATE = np.radians(np.arange(-180.0, 181.0, 30.0))
+
+
+def flown(definition: bg.BladeDefinition) -> bg.BladeDefinition:
+    """A blade whose airfoils have polars, at two Reynolds numbers."""
+    lift, drag = np.sin(2.0 * PLATE), 0.01 + np.sin(PLATE) ** 2
+    polars = tuple(Polar(PLATE, re / 1e6 * lift, drag, -lift, re) for re in (1e6, 3e6))
+    made = {
+        station.airfoil.name: replace(station.airfoil, polars=polars)
+        for station in definition.stations
+    }
+    stations = tuple(replace(s, airfoil=made[s.airfoil.name]) for s in definition.stations)
+    return replace(definition, stations=stations)
+
+
+@cache
+def flown_files(suffix: str) -> Files:
+    """The NREL 5 MW with polars: its files by name, the main one first."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, room = Path(folder) / "small.yaml", Path(folder) / "made"
+        source.write_text(mutators.written(sparse(documents()[18])), encoding="utf-8")
+        (room / "shared").mkdir(parents=True)
+        target = room / "shared" / f"blade{'.dat' if suffix == '.fst' else suffix}"
+        writers.write(flown(bg.read(source)), target)
+        if suffix == ".fst":
+            target = _model(room)
+        others = sorted(p for p in room.rglob("*") if p.is_file() and p != target)
+        return {str(p.relative_to(room)): p.read_bytes() for p in (target, *others)}
+
+
+def _model(room: Path) -> Path:
+    """Write a turbine's files beside the folder of a blade's; return the .fst file."""
+    part = (room / "shared" / "blade_AeroDyn_part.dat").read_text()
+    (room / "land").mkdir()
+    (room / "land" / "AeroDyn.dat").write_text(part.replace('"blade', '"../shared/blade'))
+    facts = "3 NumBl\n63 TipRad\n1.5 HubRad\n-2.5 PreCone(1)\n-5 ShftTilt\n"
+    (room / "land" / "ElastoDyn.dat").write_text(facts)
+    target = room / "land" / "turbine.fst"
+    target.write_text('2 CompAero\n"ElastoDyn.dat" EDFile\n"AeroDyn.dat" AeroFile\n')
+    return target
+
+
+def changed_model(suffix: str, few: tuple[str, ...], rng: Random) -> Files:
+    """A blade with polars, with one to three of its files changed: most often of a few names."""
+    files = dict(flown_files(suffix))
+    names = [name for name in files if name.endswith(few)]
+    for _ in range(rng.choice((1, 2, 3))):
+        name = rng.choice(names if rng.random() < 0.8 else list(files))
+        if rng.random() < 0.05 and name != next(iter(files)):
+            files[name] = b""
+        elif rng.random() < 0.6:
+            files[name] = mutators.words(rng, files[name])
+        else:
+            files[name] = mutators.text(rng, files[name], rng.choice(list(files.values())))
+    return files
+
+
 # ---- airfoil files ----------------------------------------------------------------------------
 
 
@@ -497,6 +557,19 @@ TARGETS = (
     Target("HAWC2", partial(changed_files, "hawc2", ".htc"), answer_other, 1),
     Target("table", partial(changed_files, "csv", ".csv"), answer_other, 1),
     Target("workbook", partial(changed_files, "xlsx", ".xlsx"), answer_other, 1),
+    Target(
+        "AeroDyn airfoils",
+        partial(changed_model, ".dat", ("blade.dat", "_AF001.dat", "_AF009.dat", "_part.dat")),
+        answer_other,
+    ),
+    Target(
+        "turbine .fst",
+        partial(changed_model, ".fst", (".fst", "AeroDyn.dat", "ElastoDyn.dat")),
+        answer_other,
+    ),
+    Target(
+        "HAWC2 pc", partial(changed_model, ".htc", (".htc", "_pc.dat", "_ae.dat")), answer_other
+    ),
     Target("airfoil file", changed_airfoil, answer_airfoil, 4),
     Target("saved space", changed_space, answer_space, 3),
 )

@@ -487,6 +487,9 @@ def test_pc_files_of_others_are_read(tmp_path):
     thickness = 100.0 * made.relative_thickness(np.array([s.eta for s in made.stations]))
     assert_allclose(heights, np.interp(thickness, *np.array(known).T), atol=1e-2)
     assert "Some foil (Re=12x10^6)" in made.stations[-1].airfoil.polars[0].source
+    odd = [(12.0, 0.2), (18.0, 1.0), (19.5, 1.0), (65.0, 1.0), (100.0, 0.0)]
+    said = findings(edited(tmp_path, published([odd])))
+    assert "profiles as thick as no airfoil are left out: 19.5 %, 65 %" in said
     said = findings(edited(tmp_path, published([[(12.0, 0.2), (30.0, 1.0)]])))
     assert "pc: holds no polars as thick as " in said
     assert "holds no polars as thick as" in findings(edited(tmp_path, published([known]), 7))

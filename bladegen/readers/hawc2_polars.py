@@ -28,6 +28,7 @@ RE_MARK, SOURCE_MARK = "Re", "from"  # in the texts of bladegen's profiles, betw
 MOST_SETS, MOST_PROFILES, MOST_ROWS = 1000, 1000, 10_000
 MOST_LETTERS = 600  # of a source
 SAME = 0.02  # % of thickness; stations nearer than this to a profile take it as it is
+ALIKE = 0.5  # %; profiles farther than this from every station are left out, and said
 BEYOND = 0.1  # %; how far a station may be out of a set's thicknesses
 
 
@@ -79,11 +80,12 @@ def with_profiles(
         Takes a finding on stations without polars.
     """
     made: dict[tuple[int, int, float], Airfoil] = {}
-    result, bare = [], []
+    result, bare, met = [], [], dict[int, list[float]]()
     for station in stations:
         nearest = int(np.argmin(np.abs(grid - station.eta)))
         wanted = int(numbers[nearest])
         thickness = 100.0 * float(rthick(station.eta))
+        met.setdefault(wanted, []).append(thickness)
         key = id(station.airfoil), wanted, round(thickness, 2)
         if key not in made:
             profiles = sets[wanted - 1] if 1 <= wanted <= len(sets) else []
@@ -101,6 +103,16 @@ def with_profiles(
                 "pc", f"holds no polars as thick as {len(bare)} airfoils: {', '.join(bare[:4])}"
             )
         )
+    unmet = {
+        f"{profile.thickness:g} %"
+        for wanted, places in met.items()
+        for profile in (sets[wanted - 1] if 1 <= wanted <= len(sets) else [])
+        if min(places) < profile.thickness < max(places)
+        and min(abs(place - profile.thickness) for place in places) > ALIKE
+    }
+    if unmet:
+        said = f"profiles as thick as no airfoil are left out: {', '.join(sorted(unmet)[:4])}"
+        notes.findings.append(Finding("pc", said))
     return tuple(result)
 
 

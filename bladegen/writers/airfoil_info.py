@@ -76,10 +76,7 @@ def tables_at(definition: BladeDefinition, spans: Sequence[float]) -> list[Table
     for eta in spans:
         place = between(definition, eta)
         kept = _ordered(place.polars())
-        ends = place.one.aerodynamic_center, place.other.aerodynamic_center
-        reference = None
-        if kept and not kept[0].is_estimate and ends[0] is not None and ends[1] is not None:
-            reference = (1.0 - place.weight) * ends[0] + place.weight * ends[1]
+        reference = place.centre if kept and not kept[0].is_estimate else None
         polars = tuple(map(completed, kept))
         found.append(Tables(polars, chord_reynolds(definition, eta), reference))
     return found

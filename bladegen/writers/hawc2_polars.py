@@ -95,7 +95,7 @@ def profile_sets(
         polar = _chosen(place.polars(), chord_reynolds(definition, at))
         if polar is None:
             return None
-        centre = place.near.aerodynamic_center
+        centre = place.centre
         if centre is not None and centre != QUARTER and not polar.is_estimate:
             polar, moved[name] = _about_quarter(polar, centre), None
         thickness = 100.0 * float(np.interp(at, eta, rthick))

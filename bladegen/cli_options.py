@@ -108,8 +108,8 @@ Polars = Annotated[
     str | None,
     typer.Option(
         metavar="estimate|keep|none",
-        help="Polars of windIO files: by NeuralFoil for shapes without their own (default of "
-        "perturbed blades if the extra aero is installed), as they are, or none.",
+        help="Polars of windIO, OpenFAST and HAWC2 files: by NeuralFoil for shapes without their "
+        "own (default of perturbed blades if the extra aero is installed), as they are, or none.",
     ),
 ]
 Reynolds = Annotated[

@@ -276,11 +276,11 @@ FORMATS = {
     ),
     ".dat": Format(
         Kind.definition,
-        "OpenFAST, an AeroDyn blade file and airfoil coordinates",
+        "OpenFAST, an AeroDyn blade file and airfoil files with polars",
         _write_definition,
     ),
     ".htc": Format(
-        Kind.definition, "HAWC2, c2_def and ae file, airfoils by thickness", _write_definition
+        Kind.definition, "HAWC2, c2_def, ae and pc file, airfoils by thickness", _write_definition
     ),
     ".csv": Format(
         Kind.definition, "spanwise table, airfoils in a folder beside it", _write_definition

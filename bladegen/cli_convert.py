@@ -25,7 +25,10 @@ def convert(
     ] = None,
     into: Annotated[
         Path | None,
-        typer.Option(help="A full turbine file of windIO: DST is that one with this blade in it."),
+        typer.Option(
+            help="A full turbine file of windIO, AeroDyn's main input or an htc file: DST is that "
+            "one with this blade in it."
+        ),
     ] = None,
     polars: Polars = None,
     reynolds: Reynolds = None,

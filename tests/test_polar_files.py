@@ -23,6 +23,7 @@ from bladegen.readers.airfoil_info import Columns
 from bladegen.readers.airfoil_info import polars as read_tables
 from bladegen.readers.document import Notes
 from bladegen.readers.hawc2_polars import profile_sets as read_sets
+from bladegen.writers.into import write_into
 from strategies import naca
 
 ALPHA = np.radians(np.arange(-180.0, 181.0, 20.0))
@@ -350,6 +351,39 @@ def test_columns_of_airfoil_tables_are_those_of_the_main_input(turbine):
     assert bg.read(path).stations[3].airfoil.polars[0].cm.any()
 
 
+def test_a_blade_goes_back_into_a_model(turbine):
+    """Out of the model, changed, and back: all other lines of the main input stay."""
+    run, main = CliRunner().invoke, turbine.with_name("AeroDyn.dat")
+    edit(main, "True                    UseBlCm", "False UseBlCm - kept")
+    changed = with_polars(4e6, 8e6)
+    source = turbine.with_name("variant.yaml")
+    bg.write(replace(changed, chord=Distribution.constant(2.0)), source)
+    result = run(cli.app, ["convert", str(source), str(main), "--into", str(main)])
+    assert result.exit_code == 0, result.output
+    assert "structure" in result.output
+    text = main.read_text()
+    assert "False UseBlCm - kept" in text
+    assert "2                       AFTabMod" in text
+    assert "../shared" not in text.lower()
+    made = bg.read(turbine)
+    assert made.chord(0.5) == pytest.approx(2.0)
+    assert lift(made, 0.5) == pytest.approx(lift(changed, 0.5), abs=0.01)
+    assert made.rotor.hub_radius == 1.5
+    said = write_into(changed, main, turbine.parent.parent / "new.dat")
+    assert any("names other files as from" in str(finding) for finding in said)
+
+
+def test_what_no_blade_goes_into_is_refused(turbine):
+    other = turbine.with_name("ElastoDyn.dat")
+    with pytest.raises(bg.BladegenError, match="is no main input of AeroDyn: NumAFfiles, AFNames"):
+        write_into(with_polars(4e6), other, other)
+    main = turbine.with_name("AeroDyn.dat")
+    before = main.read_text()
+    with pytest.raises(bg.BladegenError, match="needs polars, Cylinder1, Cylinder2"):
+        write_into(bg.read("nrel5mw"), main, main)
+    assert main.read_text() == before
+
+
 # ---- HAWC2 ---------------------------------------------------------------------------------------
 
 
@@ -529,6 +563,75 @@ def test_a_pc_file_out_of_reach_is_said(tmp_path):
     notes = Notes()
     assert read_sets(tmp_path, notes) == []
     assert "is no regular file" in str(notes.findings[0])
+
+
+HTC = """; a turbine
+begin new_htc_structure;
+  begin main_body;
+    name hub1 ;
+    begin c2_def;
+      nsec 2 ;
+      sec 1 0.0 0.0 0.0 0.0 ;
+      sec 2 0.0 0.0 2.8 0.0 ;
+    end c2_def ;
+  end main_body;
+  begin main_body;
+    begin timoschenko_input ;
+      filename ./data/st.dat ;
+    end timoschenko_input ;
+{c2_def}
+    name Blade1 ;
+  end main_body;
+end new_htc_structure;
+begin aero ;
+  link 1 mbdy_c2_def Blade1 ;
+  ae_filename ./data/old_ae.dat ;
+  pc_filename ./data/old_pc.dat ;
+  tiploss_method 1 ;
+  ae_sets 2 2 2 ;
+end aero ;
+exit ;
+"""
+
+
+def test_a_blade_goes_back_into_an_htc_file(tmp_path):
+    """Its c2_def and the names of its files change, all other lines stay."""
+    for name in ("htc", "data"):
+        (tmp_path / name).mkdir()
+    bg.write(with_polars(4e6), tmp_path / "old.htc")
+    lines = (tmp_path / "old.htc").read_text().splitlines()
+    start, end = (next(k for k, s in enumerate(lines) if w in s) for w in ("c2_def;", "end c2_def"))
+    own = HTC.format(c2_def="\n".join(lines[start : end + 1]))
+    path = tmp_path / "htc" / "turbine.htc"
+    path.write_text(own)
+    changed = replace(with_polars(4e6, 8e6), twist=Distribution.constant(0.1))
+    said = " ".join(map(str, write_into(changed, path, path)))
+    assert "st of the blade is that of the blade before" in said
+    text = path.read_text().splitlines()
+    assert text[:8] == own.splitlines()[:8]
+    for line in own.splitlines():
+        if "sec" not in line:
+            assert (line in text) == ("old_" not in line and "ae_sets" not in line), line
+    assert "  ae_filename ./htc/turbine_blade_ae.dat ;" in text
+    folder = tmp_path / "htc" / "turbine_blade_htc_airfoils"
+    again = bg.read(path, airfoils=folder)
+    assert again.twist(0.5) == pytest.approx(0.1)
+    assert lift(again, 0.5) == pytest.approx(lift(changed, 0.5), abs=2e-3)
+    assert {p.name for p in path.parent.iterdir()} == {
+        *("turbine.htc", "turbine_blade_ae.dat", "turbine_blade_pc.dat", folder.name)
+    }
+    with pytest.raises(bg.BladegenError, match="HAWC2 needs polars, Cylinder1, Cylinder2"):
+        write_into(bg.read("nrel5mw"), path, path)
+    path.write_text("begin aero ;\nend aero ;\n")
+    with pytest.raises(bg.BladegenError, match="no blade with c2_def"):
+        write_into(changed, path, path)
+    (tmp_path / "htc" / "body.htc").write_text(own[: own.index("begin aero")])
+    path.write_text("continue_in_file ./body.htc ;\n" + own[own.index("begin aero") :])
+    with pytest.raises(bg.BladegenError, match="name the file that it continues in"):
+        write_into(changed, path, path)
+    body = path.with_name("body.htc")
+    said = " ".join(map(str, write_into(changed, body, body)))
+    assert "is not all in this file; give it ae_filename ./htc/body_blade_ae.dat" in said
 
 
 # ---- on the command line -------------------------------------------------------------------------

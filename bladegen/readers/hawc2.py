@@ -29,7 +29,7 @@ from bladegen.readers.document import Notes, Range
 from bladegen.readers.hawc2_polars import Profile, profile_sets, with_profiles
 from bladegen.readers.text_file import head, number, numbers, read_lines, referred, rising
 
-__all__ = ["AE_SUFFIX", "HALF", "MARK", "PC_SUFFIX", "SUFFIXES", "read", "recognises"]
+__all__ = ["AE_SUFFIX", "HALF", "MARK", "PC_SUFFIX", "SUFFIXES", "blade_name", "read", "recognises"]
 
 MARK = "a main_body with c2_def"
 SUFFIXES = (".htc",)
@@ -127,6 +127,12 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
     except DefinitionError as error:
         notes.problems.append(str(error))
         return None
+
+
+def blade_name(path: Path, notes: Notes) -> str | None:
+    """Return the name of the main_body that is the blade, lower case; None if there is none."""
+    body = _blade_body(_commands(path, _bases(path), notes, 0), notes)
+    return None if body is None else body.name
 
 
 def _bases(path: Path) -> list[Path]:

@@ -20,11 +20,14 @@ from bladegen.files import replacing
 from bladegen.readers import turbine_file
 from bladegen.readers.yaml_file import YamlError, load_yaml
 from bladegen.writers import windio1, windio2
+from bladegen.writers.into_hawc2 import write_into_htc
+from bladegen.writers.into_openfast import write_into_main
 from bladegen.writers.windio import Document
 
 __all__ = ["write_into"]
 
 WRITERS = {"windIO 2": windio2, "windIO 1": windio1}
+OTHERS = {".dat": write_into_main, ".htc": write_into_htc}
 ROTOR = ("assembly", "hub", "drivetrain", "nacelle")
 RIVALS = frozenset(  # members of the outer shape that say the same as others, or of the old blade
     {
@@ -45,12 +48,14 @@ WIDE = 1_000_000  # characters of a line, so that lists stay on theirs
 def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[Finding, ...]:
     """Write a turbine file with its blade replaced, in the windIO version that it is in.
 
+    AeroDyn's main input and an htc file of HAWC2 are turbine files too, as OTHERS has them.
+
     Parameters
     ----------
     definition : BladeDefinition
         The blade.
     turbine : Path
-        The full turbine file.
+        The full turbine file of windIO, AeroDyn's main input (.dat), or an htc file.
     path : Path
         Where to; may be `turbine` itself.
 
@@ -64,6 +69,9 @@ def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[
     FileError
         If the turbine file cannot be read or holds no blade.
     """
+    other = OTHERS.get(turbine.suffix.lower())
+    if other is not None:
+        return other(definition, turbine, path)
     try:
         plain, _ = load_yaml(turbine)
     except YamlError as error:

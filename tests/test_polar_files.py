@@ -614,7 +614,7 @@ def test_a_blade_goes_back_into_an_htc_file(tmp_path):
             assert (line in text) == ("old_" not in line and "ae_sets" not in line), line
     assert "  ae_filename ./htc/turbine_blade_ae.dat ;" in text
     folder = tmp_path / "htc" / "turbine_blade_htc_airfoils"
-    again = bg.read(path, airfoils=folder)
+    again = bg.read(path)
     assert again.twist(0.5) == pytest.approx(0.1)
     assert lift(again, 0.5) == pytest.approx(lift(changed, 0.5), abs=2e-3)
     assert {p.name for p in path.parent.iterdir()} == {

@@ -21,6 +21,7 @@ from bladegen.readers.text_file import natural, number, read_lines, referred
 __all__ = [
     "INDEX",
     "INDEX_COLUMNS",
+    "PUT_BACK",
     "beside",
     "companion",
     "files_of",
@@ -30,6 +31,7 @@ __all__ = [
 ]
 
 INDEX = "index.csv"
+PUT_BACK = "_blade"  # behind a model's name, of the files of a blade that was put into it
 INDEX_COLUMNS = ("airfoil", "file", "relative_thickness", "span_fraction")
 MAX_FILES = 2000
 MAX_NAMES = 10  # that a message lists
@@ -53,14 +55,16 @@ def companion(path: Path) -> Path:
 def beside(path: Path, given: Path | None, notes: Notes) -> Path | None:
     """Return the folder of a blade file's airfoils: the one given, or that beside the file.
 
-    That is ``<stem>_<suffix>_airfoils``, as bladegen writes it (`companion`), or ``airfoils``.
+    That is ``<stem>_<suffix>_airfoils``, as bladegen writes it (`companion`), the same of
+    ``<stem>_blade`` where it put a blade back into a model, or ``airfoils``.
     """
     if given is not None:
         if given.is_dir():
             return given
         notes.problems.append(f"airfoils: {given} is no folder")
         return None
-    places = [companion(path), path.with_name("airfoils"), path.with_name("Airfoils")]
+    put_back = companion(path.with_name(f"{path.stem}{PUT_BACK}{path.suffix}"))
+    places = [companion(path), path.with_name("airfoils"), path.with_name("Airfoils"), put_back]
     for place in places:
         if place.is_dir():
             return place

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from bladegen.definition import BladeDefinition
 from bladegen.errors import ExportError, FileError, Finding
+from bladegen.readers.airfoil_folder import PUT_BACK
 from bladegen.readers.document import Notes
 from bladegen.readers.hawc2 import AE_SUFFIX, PC_SUFFIX, blade_name
 from bladegen.readers.text_file import read_lines
@@ -63,7 +64,7 @@ def write_into_htc(definition: BladeDefinition, htc: Path, path: Path) -> tuple[
             str(htc),
             [f"holds no c2_def of {name}; name the file that it continues in instead"],
         )
-    part = path.with_name(f"{path.stem}_blade.htc")
+    part = path.with_name(f"{path.stem}{PUT_BACK}.htc")
     findings = list(hawc2.write(definition, part))
     new = read_lines(part)
     sections = [line for (at, _), line in zip(_blocks(new), new, strict=True) if "c2_def" in at]

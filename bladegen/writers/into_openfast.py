@@ -10,6 +10,7 @@ from pathlib import Path
 
 from bladegen.definition import BladeDefinition
 from bladegen.errors import ExportError, FileError, Finding
+from bladegen.readers.airfoil_folder import PUT_BACK
 from bladegen.readers.openfast_model import PART_SUFFIX, is_main
 from bladegen.readers.text_file import read_lines
 from bladegen.writers import openfast
@@ -57,7 +58,7 @@ def write_into_main(definition: BladeDefinition, main: Path, path: Path) -> tupl
             f"{path}: AeroDyn needs polars, {', '.join(bare[:4])} have none; --polars estimate "
             "makes some"
         )
-    blade = path.with_name(f"{path.stem}_blade.dat")
+    blade = path.with_name(f"{path.stem}{PUT_BACK}.dat")
     findings = openfast.write(definition, blade)
     part = blade.with_name(f"{blade.stem}{PART_SUFFIX}")
     new = read_lines(part)

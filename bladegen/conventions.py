@@ -77,7 +77,8 @@ def axis_of_line(
         if that is outside of a section, the blade is swept, and the line itself is the axis.
     """
     if pitch_axis is None:
-        found = fraction - y / (chord * np.cos(twist))
+        with np.errstate(all="ignore"):  # chords of all but nothing, which are refused later
+            found = fraction - y / (chord * np.cos(twist))
         straight = bool(np.all((found >= INSIDE[0]) & (found <= INSIDE[1])))
         pitch_axis = found if straight else np.broadcast_to(fraction, chord.shape)
         offset = pitch_axis * chord

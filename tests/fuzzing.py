@@ -416,6 +416,13 @@ def flown(definition: bg.BladeDefinition) -> bg.BladeDefinition:
     return replace(definition, stations=stations)
 
 
+def plain(definition: bg.BladeDefinition) -> bg.BladeDefinition:
+    """A blade of one airfoil, which OpenFAST holds in a few files."""
+    tip = definition.stations[-1].airfoil
+    stations = tuple(replace(station, airfoil=tip) for station in definition.stations)
+    return replace(definition, stations=stations, relative_thickness=None)
+
+
 @cache
 def flown_files(suffix: str) -> Files:
     """The NREL 5 MW with polars: its files by name, the main one first."""
@@ -424,7 +431,8 @@ def flown_files(suffix: str) -> Files:
         source.write_text(mutators.written(sparse(documents()[18])), encoding="utf-8")
         (room / "shared").mkdir(parents=True)
         target = room / "shared" / f"blade{'.dat' if suffix == '.fst' else suffix}"
-        writers.write(flown(bg.read(source)), target)
+        blade = flown(bg.read(source))
+        writers.write(blade if suffix == ".htc" else plain(blade), target)
         if suffix == ".fst":
             target = _model(room)
         others = sorted(p for p in room.rglob("*") if p.is_file() and p != target)
@@ -559,7 +567,7 @@ TARGETS = (
     Target("workbook", partial(changed_files, "xlsx", ".xlsx"), answer_other, 1),
     Target(
         "AeroDyn airfoils",
-        partial(changed_model, ".dat", ("blade.dat", "_AF001.dat", "_AF009.dat", "_part.dat")),
+        partial(changed_model, ".dat", ("blade.dat", "_AF001.dat", "_part.dat")),
         answer_other,
     ),
     Target(

@@ -343,6 +343,20 @@ def test_what_is_odd_in_a_rotor_is_said(turbine, file, old, new, said):
     assert said in findings(bg.read(turbine))
 
 
+def test_an_empty_blade_file_is_refused(turbine):
+    (turbine.parent.parent / "Shared" / "blade.dat").write_text("")
+    assert "columns: BlSpn, BlCrvAC, BlSwpAC" in problems(turbine)
+
+
+def test_chords_of_all_but_nothing_are_refused(tmp_path):
+    bg.write(bg.read("nrel5mw"), tmp_path / "blade.dat")
+    (tmp_path / "blade_ElastoDyn_twist.dat").unlink()
+    lines = (tmp_path / "blade.dat").read_text().splitlines()
+    chord = lines[40].split()[5]
+    edit(tmp_path / "blade.dat", chord, "5e-324")
+    assert "chord must be positive, at least" in problems(tmp_path / "blade.dat")
+
+
 def test_columns_of_airfoil_tables_are_those_of_the_main_input(turbine):
     path = turbine
     edit(path.with_name("AeroDyn.dat"), "4                       InCol_Cm", "0 InCol_Cm")

@@ -138,7 +138,7 @@ def _header(lines: list[str]) -> int:
 def _table(lines: list[str], notes: Notes) -> dict[str, Array] | None:
     """Read the columns of a blade table."""
     start = _header(lines)
-    names = lines[start].split()
+    names = lines[start].split() if lines else []
     missing = [name for name in COLUMNS if name not in names]
     if not start or missing:
         notes.problems.append(f"columns: {', '.join(missing)} missing, must be given")

@@ -1,11 +1,14 @@
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_readers_tables import TABLE, airfoils, table
 
 import bladegen as bg
 from bladegen.errors import BladegenError, FileError, StudioError
 from bladegen.identity import fingerprint
+from bladegen.polars import Polar
 from bladegen.studio import library as module
 from bladegen.studio.library import Library
 
@@ -82,6 +85,22 @@ def test_files_that_belong_together_are_one_blade(library, small, tmp_path, suff
     assert fingerprint(library.baseline(key).blade.definition) == fingerprint(definition)
     assert fingerprint(bg.read(library.entry(key).source)) == fingerprint(definition)
     assert {p.name for p in tmp_path.iterdir()} == {"written", key}
+
+
+@pytest.mark.parametrize("suffix", [".dat", ".htc"])
+def test_files_with_polars_are_one_blade(library, small, tmp_path, suffix):
+    alpha = np.radians([-180.0, 0.0, 180.0])
+    polars = (Polar(alpha, np.zeros(3), np.ones(3), np.zeros(3), 1e6),)
+    made = {s.airfoil.name: replace(s.airfoil, polars=polars) for s in small.stations}
+    stations = tuple(replace(s, airfoil=made[s.airfoil.name]) for s in small.stations)
+    place = tmp_path / "written"
+    place.mkdir()
+    bg.write(replace(small, stations=stations), place / f"blade{suffix}")
+    files = [(f.name, f.read_bytes()) for f in sorted(place.rglob("*.*")) if f.is_file()]
+    assert any("_part.dat" in name or "_pc.dat" in name for name, _ in files)
+    key = library.upload(*files)
+    assert library.entry(key).named == f"blade{suffix}"
+    assert library.baseline(key).blade.definition.stations[-1].airfoil.polars
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,7 @@ from bladegen.readers import (
     read,
     turbine_file,
 )
+from bladegen.readers.openfast_model import PART_SUFFIX
 from bladegen.studio.model import Baseline
 
 __all__ = ["UPLOADS", "UPLOAD_BYTES", "UPLOAD_FILES", "Entry", "Library"]
@@ -221,9 +222,13 @@ def _stored(name: str) -> str:
 
 
 def _blade_among(place: Path, shown: str) -> Path:
-    """Return the one file of a folder that is a blade's; a single file is."""
+    """Return the one file of a folder that is a blade's; a single file is.
+
+    Lines of AeroDyn's main input that bladegen wrote with a blade are none.
+    """
     files = list(place.iterdir())
-    found = [path for path in files if len(files) == 1 or holds_blade(path)]
+    whole = [path for path in files if not path.name.endswith(PART_SUFFIX)]
+    found = [path for path in whole if len(files) == 1 or holds_blade(path)]
     if len(found) != 1:
         names = ", ".join(sorted(path.name for path in found)) or "none"
         raise FileError(shown, [f"must hold one blade, got {names[:SHOWN]}"])

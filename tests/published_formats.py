@@ -95,3 +95,56 @@ def hawc2(folder: Path, turbine: str) -> Path:
     ]
     (folder / "data" / "ae.dat").write_text("\n".join(["1 HAWC_AE data", f"1 {len(ae)} r,c", *ae]))
     return folder / "htc" / "turbine.htc"
+
+
+def windio(path: Path, version: int) -> Path:
+    """The IEA 15 MW's blade as the published files of windIO 1 or 2 state it, digit by digit."""
+    golden, two = "iea15mw", version == 2
+
+    def curve(table: str, name: str) -> str:
+        pairs = [(row["span_fraction"], row[name]) for row in rows(f"{golden}/{table}")]
+        grid, values = (", ".join(part) for part in zip(*pairs, strict=True))
+        return f"{{grid: [{grid}], values: [{values}]}}"
+
+    axis = [
+        f"        {key}: {curve(table, name)}"
+        for key, table, name in (
+            ("x", "prebend", "prebend_x_m"),
+            ("y", "sweep", "sweep_y_m"),
+            ("z", "reference_axis_z", "z_m"),
+        )
+    ]
+    schedule = rows(f"{golden}/airfoil_schedule")
+    shape = [f"      chord: {curve('chord', 'chord_m')}"]
+    if two:
+        shape += [f"      twist: {curve('windio2_twist', 'twist_deg')}"]
+        offset = curve("windio2_section_offset_y", "section_offset_y_m")
+        shape += [f"      section_offset_y: {offset}"]
+        shape += [f"      rthick: {curve('rthick', 'relative_thickness')}", "      airfoils:"]
+        shape += [
+            f"      - {{name: {row['airfoil']}, spanwise_position: {row['span_fraction']}}}"
+            for row in schedule
+        ]
+        blade = ["    reference_axis:", *axis, "    outer_shape:", *shape]
+    else:
+        shape += [f"      twist: {curve('twist', 'twist_rad')}"]
+        shape += [f"      pitch_axis: {curve('pitch_axis', 'pitch_axis_xc')}"]
+        shape += [
+            "      airfoil_position:",
+            f"        grid: [{', '.join(row['span_fraction'] for row in schedule)}]",
+            f"        labels: [{', '.join(row['airfoil'] for row in schedule)}]",
+        ]
+        blade = ["    outer_shape_bem:", *shape, "      reference_axis:", *axis]
+    foils = []
+    for row in rows(f"{golden}/airfoil_list"):
+        points = rows(f"{golden}/airfoils/{row['airfoil']}")
+        foils += [
+            f"- name: {row['airfoil']}",
+            f"  {'rthick' if two else 'relative_thickness'}: {row['nominal_relative_thickness']}",
+            f"  aerodynamic_center: {row['aerodynamic_center_xc']}",
+            f"  coordinates: {{x: [{', '.join(point['x'] for point in points)}],",
+            f"    y: [{', '.join(point['y'] for point in points)}]}}",
+        ]
+    lines = [f"windIO_version: '{version}.0'", "components:", "  blade:", *blade]
+    path.write_text("\n".join([*lines, "airfoils:", *foils]), encoding="utf-8")
+    return path

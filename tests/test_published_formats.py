@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from published_formats import GOLDEN, column, hawc2, openfast
+from published_formats import GOLDEN, column, hawc2, openfast, windio
 
 import bladegen as bg
 from bladegen.arrays import Array
@@ -124,3 +124,40 @@ def test_hawc2_gives_the_dtu_blade_up_to_its_tip(tmp_path):
 def test_without_airfoils_the_message_says_what_to_give(tmp_path, turbine):
     with pytest.raises(bg.BladegenError, match=r"no folder turbine_htc_airfoils.*--airfoils DIR"):
         bg.read(hawc2(tmp_path, turbine))
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_windio_gives_the_bundled_blade_to_the_last_digits(tmp_path, version):
+    made, bundled = bg.read(windio(tmp_path / "turbine.yaml", version)), bg.read("iea15mw")
+    assert made.format == f"windIO {version}"
+    assert not made.findings
+    eta = np.union1d(bundled.chord.grid, np.linspace(0.0, 1.0, 501))
+    for name, atol in (("chord", 0.0), ("twist", 1e-16), ("axis", 0.0)):
+        mine, theirs = getattr(made, name)(eta), getattr(bundled, name)(eta)
+        assert_allclose(mine, theirs, rtol=0, atol=atol)
+    if version == 2:
+        assert_allclose(
+            made.relative_thickness(eta), bundled.relative_thickness(eta), rtol=0, atol=0
+        )
+    else:
+        assert made.relative_thickness is None  # windIO 1 has none; the airfoils' own hold
+    assert len(made.stations) == len(bundled.stations)
+    for one, other in zip(made.stations, bundled.stations, strict=True):
+        assert (one.eta, one.airfoil.name) == (other.eta, other.airfoil.name)
+        assert one.airfoil.relative_thickness == other.airfoil.relative_thickness
+        assert one.airfoil.aerodynamic_center == other.airfoil.aerodynamic_center
+        assert_allclose(one.airfoil.coordinates, other.airfoil.coordinates, rtol=0, atol=0)
+
+
+def test_the_axis_in_the_chord_of_windio_differs_between_points_alone(tmp_path):
+    one, two = (bg.read(windio(tmp_path / f"{v}.yaml", v)) for v in (1, 2))
+    bundled = bg.read("iea15mw")
+    fine, points = np.linspace(0.0, 1.0, 5_001), one.pitch_axis.grid
+    # a product of two splines is not the spline of the product, but at the points of both
+    assert_allclose(one.offset_y(points), bundled.offset_y(points), rtol=0, atol=1e-14)
+    assert np.abs(one.offset_y(fine) - bundled.offset_y(fine)).max() < 1.1e-3
+    assert_allclose(two.offset_y(points), bundled.offset_y(points), rtol=0, atol=1e-14)
+    inner = fine < 0.95
+    assert_allclose(two.offset_y(fine[inner]), bundled.offset_y(fine[inner]), rtol=0, atol=1e-14)
+    # the three points that only the chord has: there the published figure is of another spline
+    assert np.abs(two.offset_y(fine) - bundled.offset_y(fine)).max() < 2e-4

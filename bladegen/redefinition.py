@@ -39,6 +39,7 @@ MOST_POINTS = 2_000  # of a distribution's grid
 UNCHANGED = 1e-9  # of a deformation's size or a thickening; less leaves an airfoil as it is
 BETWEEN = np.array([0.3, 0.5, 0.7])  # of an interval: where it is tested
 CLOSEST = 1e-5  # of the span, between points of a grid
+NARROW = 1e-3  # of the span; stations this close that do not suffice are not helped by more
 DECIMALS = 9  # of coordinates in chords: nanometres
 
 
@@ -68,7 +69,7 @@ def redefined(blade: "Blade", *, tolerance: float = TOLERANCE) -> BladeDefinitio
     while True:
         definition = replace(draft, stations=shapes.stations(eta))
         off = shapes.missed(definition, eta)
-        wide = (off > tolerance) & (np.diff(eta) > CLOSEST)
+        wide = (off > tolerance) & (np.diff(eta) > NARROW)
         if not wide.any() or len(eta) + np.count_nonzero(wide) > MOST_STATIONS:
             break
         eta = united(eta, (0.5 * (eta[:-1] + eta[1:]))[wide])
@@ -219,9 +220,22 @@ class _Shapes:
         wanted = np.stack([self.between[place] for place in flat.tolist()])
         off = again.profiles(flat) - wanted
         off[..., 0] += self.nose(eta)(flat)[:, None]
-        along = np.gradient(wanted, axis=1)
-        along /= np.linalg.norm(along, axis=-1, keepdims=True)
-        apart = np.abs(off[..., 0] * along[..., 1] - off[..., 1] * along[..., 0])
+        apart = _from_curve(wanted, off)
         apart = definition.chord(flat)[:, None] * apart
         widest: Array = apart.max(axis=1).reshape(inner.shape).max(axis=1)
         return widest
+
+
+def _from_curve(curve: Array, off: Array) -> Array:
+    """Return how far points lie from a curve (..., n, 2), given what they are off its own points.
+
+    To second order: a point that only slid along the curve, round a blunt nose, is on it.
+    """
+    along = np.gradient(curve, axis=-2)
+    step = np.linalg.norm(along, axis=-1, keepdims=True)
+    along /= step
+    normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+    bend = np.sum(np.gradient(along, axis=-2) * normal, axis=-1) / step[..., 0]
+    slid, apart = np.sum(off * along, axis=-1), np.sum(off * normal, axis=-1)
+    distance: Array = np.abs(apart - 0.5 * bend * slid**2)
+    return distance

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
+from bladegen import redefinition
 from bladegen.definition import Distribution, Station
 from bladegen.landmarks import contour
 from bladegen.polars import Polar
@@ -127,3 +128,29 @@ def test_a_variant_blends_the_polars_of_its_baseline_by_thickness(blade):
             assert np.floor(place) - 1e-9 <= polar.cl[1] <= np.ceil(place) + 1e-9
             if station.airfoil.name.startswith("v-"):
                 assert polar.is_borrowed
+
+
+@given(st.floats(-0.02, 0.02), st.floats(-1e-3, 1e-3))
+def test_a_point_that_slid_along_a_blunt_nose_has_not_left_it(slid, apart):
+    angle = np.linspace(0.0, np.pi, 201)
+    nose = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    moved = (1.0 + apart) * np.stack([np.cos(angle + slid), np.sin(angle + slid)], axis=-1)
+    off = redefinition._from_curve(nose, moved - nose)
+    assert_allclose(off[2:-2], abs(apart), rtol=0, atol=3e-5)
+
+
+def test_the_centre_of_forces_moves_evenly_between_airfoils(blade):
+    definition = blade.definition
+    ends = (0.5, 0.25)
+    stations = tuple(
+        replace(
+            station,
+            airfoil=replace(station.airfoil, aerodynamic_center=ends[station.eta > 0.15]),
+        )
+        for station in definition.stations
+    )
+    base = replace(definition, stations=stations)
+    variant = bg.Blade.from_definition(base).perturbed(thickness=1.02, name="v")
+    centres = [s.airfoil.aerodynamic_center for s in redefined(variant, tolerance=1e-3).stations]
+    assert np.all(np.diff(centres) <= 0)
+    assert len(set(centres)) > 4

@@ -107,9 +107,10 @@ SpanSpacing = Annotated[
 Polars = Annotated[
     str | None,
     typer.Option(
-        metavar="estimate|keep|none",
+        metavar="estimate|estimate-all|keep|none",
         help="Polars of windIO, OpenFAST and HAWC2 files: by NeuralFoil for shapes without their "
-        "own (default of perturbed blades if the extra aero is installed), as they are, or none.",
+        "own (default of perturbed blades if the extra aero is installed) or for all, as they "
+        "are, or none.",
     ),
 ]
 Reynolds = Annotated[

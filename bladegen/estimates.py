@@ -24,12 +24,15 @@ from bladegen.sections import SectionSplines
 
 __all__ = ["POLICIES", "available", "chord_reynolds", "estimated", "reynolds_at", "with_polars"]
 
-POLICIES = ("estimate", "keep", "none")
+POLICIES = ("estimate", "estimate-all", "keep", "none")
+ESTIMATING = ("estimate", "estimate-all")
 MODEL = "xlarge"
 ANGLES = np.linspace(-20.0, 20.0, 81)  # deg; its confidence is lost beyond 25
 STALL = np.radians(3.0)  # stalls nearer to 0 than this are none
 THICK = 0.4  # of the chord: thicker sections are mixed with a cylinder
 CYLINDER_DRAG = 0.5  # of a cylinder beyond its drag crisis, as in the NREL 5 MW's root
+QUARTER, HALF = 0.25, 0.5  # chords; where forces act on an airfoil and on a cylinder
+RENARD = 10  # Reynolds numbers a decade
 DIGITS = 6  # of coefficients
 LANDMARKS = 201
 AIR = 1.46e-5  # m2/s, kinematic viscosity at 15 degrees C
@@ -55,7 +58,8 @@ def with_polars(
     definition : BladeDefinition
         The blade.
     policy : str
-        "estimate" those of airfoils without polars of their own, "keep" what there is, "none".
+        "estimate" those of airfoils without polars of their own, "estimate-all" so that a
+        variant and its baseline can be compared, "keep" what there is, "none".
     reynolds : float, optional
         For the estimates; by default that of the polars there are, else that of the chord at
         `TIP_SPEED`.
@@ -69,7 +73,7 @@ def with_polars(
     """
     if policy not in POLICIES:
         raise BladegenError(f"polars: got {policy!r}, allowed are {', '.join(POLICIES)}")
-    if policy == "estimate" and not available():
+    if policy in ESTIMATING and not available():
         raise BladegenError(
             "polars: estimates need NeuralFoil, which the extra aero installs: "
             "pip install 'bladegen[aero]'"
@@ -85,10 +89,15 @@ def with_polars(
         foreign = not airfoil.polars or airfoil.polars[0].is_borrowed
         if policy == "none":
             airfoil = replace(airfoil, polars=())
-        elif policy == "estimate" and foreign:
+        elif policy == "estimate-all" or (policy == "estimate" and foreign):
             progress(f"estimating the polar of {airfoil.name}")
             at = reynolds or reynolds_at(definition, station)
-            airfoil = replace(airfoil, polars=(estimated(airfoil, at),), aerodynamic_center=0.25)
+            centre = QUARTER + (HALF - QUARTER) * _rounded(_flat(airfoil)[1])
+            airfoil = replace(
+                airfoil,
+                polars=(estimated(airfoil, at),),
+                aerodynamic_center=round(centre, DIGITS),
+            )
         elif airfoil.polars and foreign:
             borrowed += 1
         made[id(station.airfoil)] = airfoil
@@ -101,12 +110,12 @@ def _said(stations: tuple[Station, ...], policy: str, borrowed: int) -> tuple[Fi
     guessed = [a for a in airfoils if a.polars and a.polars[0].is_estimate]
     bare = sum(not airfoil.polars for airfoil in airfoils)
     said = []
-    if guessed and policy == "estimate":
+    if guessed and policy in ESTIMATING:
         said.append(f"{len(guessed)} airfoils with an {guessed[0].polars[0].source.split(';')[0]}")
     if borrowed:
         said.append(f"{borrowed} airfoils with polars of the baseline, not of their own shape")
     if bare and policy != "none":
-        said.append(f"{bare} airfoils have none; the policy estimate makes some")
+        said.append(f"{bare} airfoils have none; --polars estimate makes some")
     return tuple(Finding("polars", text) for text in said)
 
 
@@ -117,18 +126,20 @@ def reynolds_at(definition: BladeDefinition, station: Station) -> float:
 
 
 def chord_reynolds(definition: BladeDefinition, eta: float) -> float:
-    """Return the Reynolds number of the chord at a span fraction, the tip at `TIP_SPEED`."""
+    """Return the Reynolds number of the chord at a span fraction, the tip at `TIP_SPEED`.
+
+    It is rounded to `RENARD` a decade, so that a blade has few: see `polars.blended`.
+    """
     hub = definition.rotor.hub_radius or 0.0
     ratio = (hub + eta * definition.length) / (hub + definition.length)
     rough = float(definition.chord(eta)) * max(ratio, 0.05) * TIP_SPEED / AIR
-    return float(f"{rough:.2g}")
+    return float(f"{10.0 ** (round(RENARD * np.log10(rough)) / RENARD):.3g}")
 
 
 def estimated(airfoil: Airfoil, reynolds: float) -> Polar:
     """Return the estimated polar of an airfoil at a Reynolds number."""
-    points = landmarks(airfoil.coordinates, LANDMARKS)
-    points, thickness = _flat(points)
-    mixed = float(np.clip((thickness - THICK) / (1.0 - THICK), 0.0, 1.0))
+    points, thickness = _flat(airfoil)
+    mixed = _rounded(thickness)
     thinned = points * [1.0, min(1.0, THICK / thickness)]
     alpha, cl, cd, cm, confidence = _neuralfoil(thinned, reynolds)
     alpha, cl, cd, cm = extended(alpha, cl, cd, cm)
@@ -147,11 +158,17 @@ def estimated(airfoil: Airfoil, reynolds: float) -> Polar:
     return Polar(alpha, cl, cd, cm, reynolds, source=source)
 
 
-def _flat(points: Array) -> tuple[Array, float]:
-    """Return landmarks with a unit chord along x, and their relative thickness."""
+def _rounded(thickness: float) -> float:
+    """Return how much of a cylinder a section of a relative thickness is taken for, 0 to 1."""
+    return float(np.clip((thickness - THICK) / (1.0 - THICK), 0.0, 1.0))
+
+
+def _flat(airfoil: Airfoil) -> tuple[Array, float]:
+    """Return landmarks of an airfoil, unit chord along x, and their relative thickness."""
     from bladegen import affine
     from bladegen.landmarks import landmark_parameters
 
+    points = landmarks(airfoil.coordinates, LANDMARKS)
     splines = SectionSplines(landmark_parameters(len(points)))
     A, c = splines.normalising(points[None], None)
     flat = affine.restore(points[None], A, c)

@@ -97,7 +97,8 @@ def blended(
     -------
     tuple of Polar
         Pair by pair on both grids of angles united; where the airfoils have other sets than each
-        other, those of the nearer one.
+        other, those of the nearer one.  The Reynolds number is the nearer one's: WISDEM makes
+        tables over every one that a file names, so that blended ones take its memory.
     """
     nearer = one if weight < 0.5 else other
     if [p.configuration for p in one] != [p.configuration for p in other]:
@@ -109,18 +110,7 @@ def blended(
             (1.0 - weight) * a + weight * b
             for a, b in zip(first.at(alpha), second.at(alpha), strict=True)
         ]
-        reynolds = near.reynolds
-        if first.reynolds is not None and second.reynolds is not None:
-            reynolds = (1.0 - weight) * first.reynolds + weight * second.reynolds
         result.append(
-            replace(
-                near,
-                alpha=alpha,
-                cl=parts[0],
-                cd=parts[1],
-                cm=parts[2],
-                reynolds=reynolds,
-                source=source,
-            )
+            replace(near, alpha=alpha, cl=parts[0], cd=parts[1], cm=parts[2], source=source)
         )
     return tuple(result)

@@ -39,7 +39,9 @@ def test_a_blend_lies_between_and_says_where_it_is_from(weight):
     one, other = polar(1.0, reynolds=1e6), polar(2.0, reynolds=3e6)
     (mixed,) = blended([one], [other], weight, f"{BORROWED}: both")
     assert_allclose(mixed.cl, (1.0 + weight) * one.cl, atol=1e-14)
-    assert mixed.reynolds == pytest.approx(1e6 + 2e6 * weight)
+    assert mixed.reynolds == (
+        1e6 if weight < 0.5 else 3e6
+    )  # few numbers: WISDEM has a table of each
     assert mixed.is_borrowed
     assert not one.is_borrowed
     (nearer,) = blended([one], [replace(other, configuration="rough")], weight, "x")
@@ -126,6 +128,45 @@ def test_thick_sections_go_over_to_a_cylinder():
     assert "thinned to 40 %, mixed with 33 % of a cylinder" in thick.source
 
 
+def test_forces_act_between_the_quarter_of_an_airfoil_and_the_half_of_a_cylinder():
+    pytest.importorskip("neuralfoil")
+    thin, thick = SYMMETRIC, Airfoil("thick", naca(0.7, 0.0, 0.0))
+    definition = replace(
+        bg.read("nrel5mw"),
+        stations=(
+            Station(0.0, Airfoil("circle", circle())),
+            Station(0.5, thick),
+            Station(1.0, thin),
+        ),
+    )
+    made, _ = estimates.with_polars(definition, "estimate")
+    centres = [station.airfoil.aerodynamic_center for station in made.stations]
+    assert_allclose(centres, [0.5, 0.375, 0.25], atol=2e-3)
+
+
+def test_a_baseline_can_be_estimated_as_its_variant_is():
+    pytest.importorskip("neuralfoil")
+    known = with_polars(bg.read("nrel5mw"), 4e6)
+    known = replace(known, stations=(known.stations[0], known.stations[-1]))
+    kept, _ = estimates.with_polars(known, "estimate")
+    made, said = estimates.with_polars(known, "estimate-all")
+    assert kept.stations[-1].airfoil.polars == known.stations[-1].airfoil.polars
+    assert made.stations[-1].airfoil.polars[0].source.startswith("estimate: NeuralFoil")
+    assert made.stations[-1].airfoil.polars[0].reynolds == 4e6
+    assert "2 airfoils with an estimate" in str(said[0])
+
+
+def test_a_blade_without_polars_is_estimated_at_few_reynolds_numbers():
+    bare = bg.read("nrel5mw")
+    eta = np.linspace(0.05, 1.0, 60)
+    numbers = [
+        estimates.reynolds_at(bare, Station(place, bare.stations[-1].airfoil)) for place in eta
+    ]
+    assert len(set(numbers)) < 12
+    rotor = (bare.rotor.hub_radius + eta * bare.length) / (bare.rotor.hub_radius + bare.length)
+    assert_allclose(numbers, bare.chord(eta) * rotor * 80.0 / 1.46e-5, rtol=0.13)
+
+
 def with_polars(definition, known):
     stations = tuple(
         Station(s.eta, replace(s.airfoil, polars=(polar(reynolds=known),)))
@@ -144,7 +185,9 @@ def test_policies(monkeypatch):
     assert not any(station.airfoil.polars for station in gone.stations)
     _, said = estimates.with_polars(bare, "keep")
     assert "8 airfoils have none" in str(said[0])
-    with pytest.raises(BladegenError, match="got 'guess', allowed are estimate, keep, none"):
+    with pytest.raises(
+        BladegenError, match="got 'guess', allowed are estimate, estimate-all, keep"
+    ):
         estimates.with_polars(bare, "guess")
     monkeypatch.setattr(estimates, "available", lambda: False)
     with pytest.raises(BladegenError, match=r"pip install 'bladegen\[aero\]'"):
@@ -154,7 +197,7 @@ def test_policies(monkeypatch):
 def test_reynolds_numbers_are_those_of_polars_or_of_the_chord():
     bare = bg.read("nrel5mw")
     tip = estimates.reynolds_at(bare, bare.stations[-1])
-    assert tip == pytest.approx(float(bare.chord(1.0)) * 80.0 / 1.46e-5, rel=0.05)
+    assert tip == pytest.approx(float(bare.chord(1.0)) * 80.0 / 1.46e-5, rel=0.13)
     known = with_polars(bare, 4e6)
     assert estimates.reynolds_at(known, known.stations[3]) == 4e6
 

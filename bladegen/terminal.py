@@ -2,6 +2,7 @@
 
 import json
 import logging
+import re
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,6 +22,11 @@ __all__ = [
     "progress_bar",
     "variants_bar",
 ]
+
+
+ALIKE = 3  # findings of a kind that are printed; the report holds all
+NUMBER = re.compile(r"[-+]?\d[\d.e+-]*")
+CLAUSE = re.compile(r"[,;] ")  # the last one says what kind of finding it is
 
 
 @cache
@@ -122,8 +128,15 @@ def print_figures(title: str, figures: dict[str, Any]) -> None:
 
 
 def print_findings(findings: list[str]) -> None:
+    """Print findings; of those that say the same of many places, the first few and their count."""
+    kinds: dict[str, list[str]] = {}
     for finding in findings:
-        typer.echo(f"note: {finding}")
+        kinds.setdefault(NUMBER.sub("", CLAUSE.split(finding)[-1]), []).append(finding)
+    for alike in kinds.values():
+        for finding in alike[:ALIKE]:
+            typer.echo(f"note: {finding}")
+        if len(alike) > ALIKE:
+            typer.echo(f"note: and {len(alike) - ALIKE} more like the last")
 
 
 def print_table(columns: list[str], rows: list[list[str]], title: str | None = None) -> None:

@@ -4,6 +4,7 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen import cli
+from bladegen.terminal import print_findings
 
 RUN = CliRunner()
 
@@ -61,3 +62,15 @@ def test_convert_writes_airfoil_files_into_a_folder(tmp_path):
     assert result.exit_code == 0, result.output
     assert "chord, twist, axis and places left out" in result.output
     assert len(list((tmp_path / "foils").glob("*.dat"))) == 8
+
+
+def test_findings_of_one_kind_are_cut_short(capsys):
+    alike = [
+        f"eta = {k / 100}: side {k} has a dent, {k / 9:.2f} % of the chord deep" for k in range(9)
+    ]
+    print_findings([*alike, "polars: 9 airfoils with an estimate"])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:3] == [f"note: {text}" for text in alike[:3]]
+    assert lines[3:] == [
+        "note: and 6 more like the last", "note: polars: 9 airfoils with an estimate"
+    ]  # fmt: skip

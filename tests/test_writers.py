@@ -103,7 +103,8 @@ def test_x_beyond_the_chord_and_thickness_beyond_one_are_brought_within_the_sche
         relative_thickness=thick,
     )
     said = " ".join(map(str, bg.write(definition, tmp_path / "two.yaml")))
-    assert "x from -0.001000 on leaves 0 to 1; moved to 0 and divided by 1.002" in said
+    assert "2 with x outside of 0 to 1, which windIO does not allow: moved to 0 and divided" in said
+    assert "by up to 1.002000 (a)" in said
     assert "1.001 is above 1" in said
     document, _ = load_yaml(tmp_path / "two.yaml")
     x = np.array(document["airfoils"][0]["coordinates"]["x"])
@@ -189,7 +190,9 @@ def turbine(tmp_path):
 def test_a_blade_put_back_unchanged_leaves_the_file_as_it_was(turbine, tmp_path):
     said = write_into(bg.read(turbine), turbine, tmp_path / "again.yaml")
     assert load_yaml(tmp_path / "again.yaml")[0] == load_yaml(turbine)[0]
-    assert "structure kept as they were" in str(said[-1])
+    assert [str(finding) for finding in said] == [
+        "turbine file: this is the blade that it holds; nothing replaced"
+    ]
     text = (tmp_path / "again.yaml").read_text(encoding="utf-8")
     for comment in ("# a turbine", "# text, not a number", "# its axis", "# untouched"):
         assert comment in text
@@ -202,7 +205,13 @@ def test_only_the_blade_is_changed_and_aliases_of_it_are_kept(turbine, tmp_path)
     definition = redefined(variant, tolerance=5e-3)
     said = write_into(definition, turbine, tmp_path / "full.yaml")
     old, new = (load_yaml(path)[0] for path in (turbine, tmp_path / "full.yaml"))
-    assert "added: variant-" in " ".join(map(str, said))
+    told = [str(finding) for finding in said]
+    assert "added: variant-" in " ".join(told)
+    assert "replaced: outer_shape.airfoils, outer_shape.chord, outer_shape.section_offset_y" in (
+        " ".join(told)
+    )
+    assert told[-1] == "components.blade: kept: structure, made for the blade before"
+    assert "airfoils of the blade, without which WISDEM stops (variant-" in told[-2]
     for key in ("windIO_version", "name", "assembly", "control"):
         assert new[key] == old[key]
     assert new["airfoils"][:2] == old["airfoils"]
@@ -214,6 +223,34 @@ def test_only_the_blade_is_changed_and_aliases_of_it_are_kept(turbine, tmp_path)
     again = write_into(bg.read(tmp_path / "full.yaml"), turbine, turbine)  # in its own place
     assert len(again) == len(said)
     assert load_yaml(turbine)[0] == new
+
+
+def test_other_polars_of_a_known_airfoil_are_put_in_and_asked_for(turbine, tmp_path):
+    definition = bg.read(turbine)
+    alpha = np.radians([-180.0, -10.0, 0.0, 12.5, 180.0])
+    polar = Polar(alpha, np.sin(alpha), 0.01 + alpha**2, 0.0 * alpha, 3e6, source="estimate")
+    foil = replace(definition.stations[0].airfoil, polars=(polar,), aerodynamic_center=0.3)
+    changed = replace(definition, stations=(Station(0.0, foil), definition.stations[1]))
+    said = write_into(changed, turbine, turbine)
+    assert "1 get other polars, their shapes as they were: a" in str(said[0])
+    document, _ = load_yaml(turbine)
+    assert document["airfoils"][0]["note"] == "kept"
+    assert document["airfoils"][0]["aerodynamic_center"] == 0.3
+    schedule = document["components"]["blade"]["outer_shape"]["airfoils"]
+    assert schedule[0]["configuration"] == ["default"]  # those it asked for are no longer there
+    assert schedule[0]["weight"] == [1.0]
+    assert schedule[1]["configuration"] == ["clean"]
+    before = turbine.read_bytes()
+    write_into(bg.read(turbine), turbine, turbine)
+    assert turbine.read_bytes() == before
+
+
+def test_escaped_characters_stay_escaped(turbine):
+    text = turbine.read_text(encoding="utf-8")
+    turbine.write_text(text + 'comments: "45\\xB0 \\u2014 glass"\n', encoding="utf-8")
+    before = turbine.read_bytes()
+    write_into(bg.read("nrel5mw"), turbine, turbine)
+    assert before.splitlines()[-1] == turbine.read_bytes().splitlines()[-1]
 
 
 def test_an_airfoil_of_the_same_name_and_another_shape_is_replaced(turbine, tmp_path):

@@ -8,16 +8,18 @@ stands beside them (structure, polars of other airfoils, control) is the same do
 
 import math
 import re
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections.abc import Callable, Iterator, Mapping, MutableMapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bladegen.definition import BladeDefinition
+from bladegen.definition import Airfoil, BladeDefinition
 from bladegen.errors import FileError, Finding
 from bladegen.files import replacing
 from bladegen.readers import turbine_file
+from bladegen.readers.document import Node, Notes
+from bladegen.readers.polars import polars as read_polars
 from bladegen.readers.yaml_file import YamlError, load_yaml
 from bladegen.writers import windio1, windio2
 from bladegen.writers.into_hawc2 import write_into_htc
@@ -40,6 +42,8 @@ RIVALS = frozenset(  # members of the outer shape that say the same as others, o
     }
 )
 PLACE = ("name", "spanwise_position")
+KEYS_OF_POLARS = frozenset({"polars", "aerodynamic_center"})
+NOWHERE = np.array([[1.0, 0.0], [0.0, 0.0], [1.0, 0.0]])  # a shape, where only polars are asked for
 ROUNDING = 1e-14  # relative, of degrees to radians and back
 FLOAT = "tag:yaml.org,2002:float"
 WIDE = 1_000_000  # characters of a line, so that lists stay on theirs
@@ -85,10 +89,15 @@ def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[
     findings = [finding for finding in findings if finding.where.split(".")[0] not in ROTOR]
     yaml, full = _round_trip(turbine)
     blade = _member(full, ("components", "blade"), turbine)
-    for key, value in new["components"]["blade"].items():
-        _merge(blade, key, value)
-    findings += _airfoils(full, new["airfoils"], turbine)
-    findings += _doubts(plain)
+    changed = [
+        name
+        for key, value in new["components"]["blade"].items()
+        for name in _merge(blade, key, value)
+    ]
+    said = [*_airfoils(full, new["airfoils"], turbine, writer.polars)]
+    findings += said
+    _configurations(full, new)
+    findings += _doubts(plain, full, changed, unchanged=not (changed or said))
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8") as stream:
         yaml.dump(full, stream)
     return tuple(findings)
@@ -114,6 +123,7 @@ def _round_trip(path: Path) -> tuple[Any, Any]:
     yaml.preserve_quotes = True
     yaml.width = WIDE
     text = path.read_text(encoding="utf-8")
+    yaml.allow_unicode = not text.isascii()  # characters that the file escapes stay escaped
     yaml.indent(**_indents(text))
     try:
         return yaml, yaml.load(text)
@@ -164,27 +174,30 @@ def _member(full: Any, keys: tuple[str, ...], turbine: Path) -> Any:
     return full
 
 
-def _merge(holder: Any, key: str, value: Any) -> None:
-    """Replace a member of a mapping, mappings within it member by member.
+def _merge(holder: Any, key: str, value: Any) -> Iterator[str]:
+    """Replace a member of a mapping, mappings within it member by member; say which changed.
 
     Curves are replaced whole: an alias elsewhere may share the mapping, and must keep it.
     """
     old = holder.get(key)
     if isinstance(old, MutableMapping) and isinstance(value, dict) and "grid" not in value:
         for inner, part in value.items():
-            _merge(old, inner, part)
+            yield from (f"{key}.{name}" for name in _merge(old, inner, part))
         for other in RIVALS.intersection(old).difference(value):
             del old[other]
+            yield f"{key}.{other}"
     elif key == "airfoils" and isinstance(old, list):
         kept: dict[Any, Any] = {e.get("name"): e for e in old if isinstance(e, Mapping)}
         value = [{**kept.get(entry["name"], {}), **_position(entry, kept)} for entry in value]
         if not _same(old, value):
             holder[key] = _flow(value)
+            yield key
     elif not _same(old, value):
         made = _flow(value)
         if isinstance(old, Mapping) and _same(old.get("grid"), value["grid"]):
             made["grid"] = old["grid"]
         holder[key] = made
+        yield key
 
 
 def _position(entry: Document, kept: Mapping[Any, Any]) -> Document:
@@ -218,13 +231,15 @@ def _flow(value: Any) -> Any:
     return value
 
 
-def _airfoils(full: Any, new: list[Document], turbine: Path) -> Iterator[Finding]:
-    """Put airfoils into the file's list: those it has, with their shape changed; others added."""
+def _airfoils(
+    full: Any, new: list[Document], turbine: Path, polars: Callable[[Airfoil], list[Document]]
+) -> Iterator[Finding]:
+    """Put airfoils into the file's list: those it has, where they changed; others added."""
     entries = full.get("airfoils")
     if not isinstance(entries, list):
         raise FileError(str(turbine), ["airfoils: is missing, must be a list"])
     known: dict[Any, Any] = {e.get("name"): e for e in entries if isinstance(e, Mapping)}
-    added = []
+    added, updated = [], []
     for airfoil in new:
         entry = known.get(airfoil["name"])
         if entry is None:
@@ -232,14 +247,38 @@ def _airfoils(full: Any, new: list[Document], turbine: Path) -> Iterator[Finding
             added.append(airfoil["name"])
         elif not _near(entry.get("coordinates"), airfoil["coordinates"]):
             entry.update({key: _flow(value) for key, value in airfoil.items()})
-            polars = "polars and all" if "polars" in airfoil else "its polars kept"
+            whole = "polars and all" if "polars" in airfoil else "its polars kept"
             yield Finding(
                 f"airfoil {airfoil['name']}",
-                f"the turbine file has another of that name; replaced, {polars}",
+                f"the turbine file has another of that name; replaced, {whole}",
             )
-    if added:
-        shown = ", ".join(added[:3]) + (f" and {len(added) - 3} more" if len(added) > 3 else "")
-        yield Finding("airfoils", f"{len(added)} added: {shown}")
+        elif "polars" in airfoil and not _same(_read(entry, polars), airfoil["polars"]):
+            for part in KEYS_OF_POLARS.intersection(airfoil):
+                entry[part] = _flow(airfoil[part])
+            updated.append(airfoil["name"])
+    for names, done in ((added, "added"), (updated, "get other polars, their shapes as they were")):
+        if names:
+            more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+            yield Finding("airfoils", f"{len(names)} {done}: {', '.join(names[:3])}{more}")
+
+
+def _read(entry: Any, polars: Callable[[Airfoil], list[Document]]) -> list[Document]:
+    """Return the polars of an entry of the file as they would be written."""
+    known = Airfoil("read", NOWHERE, polars=read_polars(Node(entry, "", Notes())))
+    return polars(known)
+
+
+def _configurations(full: Any, new: Document) -> None:
+    """Let the schedule ask for polars that its airfoils have: WISDEM stops at any other."""
+    shape = new["components"]["blade"].get("outer_shape", {})
+    wanted = {entry["name"]: entry for entry in shape.get("airfoils", [])}
+    known = {a.get("name"): a.get("polars") for a in full["airfoils"] if isinstance(a, Mapping)}
+    for entry in full["components"]["blade"].get("outer_shape", {}).get("airfoils", []):
+        own = known.get(entry["name"]) or []
+        names = [polar.get("configuration") for polar in own if isinstance(polar, Mapping)]
+        ours = wanted.get(entry["name"], {})
+        if "configuration" in ours and not set(entry.get("configuration", [None])) <= set(names):
+            entry |= {key: _flow(ours[key]) for key in ("configuration", "weight")}
 
 
 def _near(old: Any, new: Document) -> bool:
@@ -254,13 +293,28 @@ def _near(old: Any, new: Document) -> bool:
     return np.array_equal(xy[kept], np.array([new["x"], new["y"]]).T)
 
 
-def _doubts(plain: Mapping[str, Any]) -> Iterator[Finding]:
-    """Say what of the turbine was made for the blade before."""
+def _doubts(
+    plain: Mapping[str, Any], full: Any, changed: list[str], *, unchanged: bool
+) -> Iterator[Finding]:
+    """Say what was replaced, and what of the turbine was made for the blade before."""
     blade = plain["components"]["blade"]
+    if unchanged:
+        yield Finding("turbine file", "this is the blade that it holds; nothing replaced")
+        return
+    if changed:
+        yield Finding("replaced", ", ".join(changed))
     yield Finding(
         "turbine file",
-        "order, comments and anchors kept, but for comments inside what was replaced",
+        "all else, order, comments and anchors kept, but for comments inside what was replaced",
     )
+    bare = _without_polars(full)
+    if bare:
+        shown = ", ".join(bare[:3]) + (f" and {len(bare) - 3} more" if len(bare) > 3 else "")
+        yield Finding(
+            "polars",
+            f"none for {len(bare)} airfoils of the blade, without which WISDEM stops ({shown}); "
+            "--polars estimate makes some",
+        )
     shape = blade.get("outer_shape")
     if isinstance(shape, Mapping) and "surface" in shape:
         yield Finding("outer_shape.surface", "was of the blade before; left out")
@@ -270,5 +324,16 @@ def _doubts(plain: Mapping[str, Any]) -> Iterator[Finding]:
     if parts:
         yield Finding(
             "components.blade",
-            f"{', '.join(parts)} kept as they were; they were made for the blade before",
+            f"kept: {', '.join(parts)}, made for the blade before",
         )
+
+
+def _without_polars(full: Any) -> list[str]:
+    """Return the names of the blade's airfoils that have no polars."""
+    blade = full["components"]["blade"]
+    if "outer_shape" in blade:
+        names = [entry["name"] for entry in blade["outer_shape"]["airfoils"]]
+    else:
+        names = blade["outer_shape_bem"]["airfoil_position"]["labels"]
+    bare = {a["name"] for a in full["airfoils"] if isinstance(a, Mapping) and not a.get("polars")}
+    return [name for name in dict.fromkeys(names) if name in bare]

@@ -92,14 +92,11 @@ def airfoil_entries(
     """
     airfoils = {station.airfoil.name: station.airfoil for station in stations}
     entries = []
+    scales: dict[str, float] = {}
     for airfoil in airfoils.values():
         points, scale = _within(airfoil.coordinates)
         if scale is not None:
-            note(
-                f"airfoil {airfoil.name}",
-                f"x from {airfoil.coordinates[:, 0].min():.6f} on leaves 0 to 1; moved to 0 and "
-                f"divided by {scale:.6f}, so that the section moves along its chord",
-            )
+            scales[airfoil.name] = scale
         entry: Document = {
             "name": airfoil.name,
             "coordinates": {"x": points[:, 0].tolist(), "y": points[:, 1].tolist()},
@@ -112,6 +109,13 @@ def airfoil_entries(
         if airfoil.polars:
             entry["polars"] = polars(airfoil)
         entries.append(entry)
+    if scales:
+        most = max(scales, key=lambda name: scales[name])
+        note(
+            "airfoils",
+            f"{len(scales)} with x outside of 0 to 1, which windIO does not allow: moved to 0 and "
+            f"divided by up to {scales[most]:.6f} ({most}), and so moved along their chords",
+        )
     return entries
 
 

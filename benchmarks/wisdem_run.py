@@ -1,8 +1,9 @@
 """A turbine with its own, the same and a perturbed blade in WISDEM: power, thrust, mass.
 
-Run: python benchmarks/wisdem_run.py [TURBINE.yaml].  The turbine is a full windIO 2 file, by default
-the IEA 15 MW of the windIO package.  WISDEM is no dependency of bladegen: install it, or name the
-Python that has it in WISDEM_PYTHON.  Every blade goes through the commands that a user types.
+Run: python benchmarks/wisdem_run.py [TURBINE.yaml].  The turbine is a full windIO 2 file, by
+default the IEA 15 MW of the windIO package.  WISDEM is no dependency of bladegen: install it, or
+name the Python that has it in WISDEM_PYTHON.  Every blade goes through the commands that a user
+types.
 """
 
 import json
@@ -46,7 +47,7 @@ WISDEM:
 Environment: {air_density: 1.225, air_dyn_viscosity: 1.81e-5, shear_exp: 0.2}
 """
 ANALYSIS = "general: {folder_output: outputs, fname_output: out}\n"
-UNITS = ("", "GWh", "MW", "m/s", "MN", "t", "m")
+HEAD = ("blade", "Cp", "AEP, GWh", "power, MW", "rated at, m/s", "thrust, MN", "mass, t", "tip, m")
 
 
 def bladegen(*arguments: object) -> None:
@@ -97,11 +98,8 @@ def main() -> None:
             "in WISDEM_PYTHON"
         )
     turbine = Path(sys.argv[1]) if len(sys.argv) > 1 else default_turbine(python)
-    print(
-        "| " + " | ".join(["blade", "Cp", *("AEP, GWh", "power, MW", "rated at, m/s")]), end=" | "
-    )
-    print("thrust, MN | mass, t | tip moves, m |")
-    print("| --- " * 8 + "|")
+    print("| " + " | ".join(HEAD) + " |")
+    print("| --- " * len(HEAD) + "|")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for title, change, polars in (
@@ -113,17 +111,17 @@ def main() -> None:
             ("perturbed, all polars estimated", ("--pga", PGA), "estimate-all"),
         ):
             made = folder / "new.yaml"
-            source = turbine
+            source, then = turbine, polars
             if change:
                 bladegen(
                     "perturb", turbine, "-o", folder, *change, "--format", "yaml",
                     "--name", "variant", "--polars", polars,
                 )  # fmt: skip
-                source, polars = folder / "variant.yaml", "keep"
+                source, then = folder / "variant.yaml", "keep"
             if change is None:
                 made.write_bytes(turbine.read_bytes())
             else:
-                bladegen("convert", source, made, "--into", turbine, "--polars", polars)
+                bladegen("convert", source, made, "--into", turbine, "--polars", then)
             row = run(python, made)
             print(f"| {title} | " + " | ".join(f"{value:.5g}" for value in row) + " |", flush=True)
 

@@ -39,7 +39,6 @@ MOST_POINTS = 2_000  # of a distribution's grid
 UNCHANGED = 1e-9  # of a deformation's size or a thickening; less leaves an airfoil as it is
 BETWEEN = np.array([0.3, 0.5, 0.7])  # of an interval: where it is tested
 CLOSEST = 1e-5  # of the span, between points of a grid
-NARROW = 1e-3  # of the span; stations this close that do not suffice are not helped by more
 DECIMALS = 9  # of coordinates in chords: nanometres
 
 
@@ -69,7 +68,7 @@ def redefined(blade: "Blade", *, tolerance: float = TOLERANCE) -> BladeDefinitio
     while True:
         definition = replace(draft, stations=shapes.stations(eta))
         off = shapes.missed(definition, eta)
-        wide = (off > tolerance) & (np.diff(eta) > NARROW)
+        wide = (off > tolerance) & (np.diff(eta) > CLOSEST)
         if not wide.any() or len(eta) + np.count_nonzero(wide) > MOST_STATIONS:
             break
         eta = united(eta, (0.5 * (eta[:-1] + eta[1:]))[wide])

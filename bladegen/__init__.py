@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from bladegen.readers import bundled, read
     from bladegen.writers import write, write_airfoil
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 getLogger(__name__).addHandler(NullHandler())  # who wants to hear more asks for it
 

@@ -369,14 +369,17 @@ def test_a_blade_goes_back_into_a_model(turbine):
     """Out of the model, changed, and back: all other lines of the main input stay."""
     run, main = CliRunner().invoke, turbine.with_name("AeroDyn.dat")
     edit(main, "True                    UseBlCm", "False UseBlCm - kept")
+    main.write_bytes(main.read_bytes().replace(b"\n", b"\r\n").replace(b"- kept", b"- kept \xb0"))
     changed = with_polars(4e6, 8e6)
     source = turbine.with_name("variant.yaml")
     bg.write(replace(changed, chord=Distribution.constant(2.0)), source)
     result = run(cli.app, ["convert", str(source), str(main), "--into", str(main)])
     assert result.exit_code == 0, result.output
     assert "structure" in result.output
-    text = main.read_text()
-    assert "False UseBlCm - kept" in text
+    written = main.read_bytes()
+    assert b"False UseBlCm - kept \xb0 " in written
+    assert written.count(b"\n") == written.count(b"\r\n")
+    text = written.decode("latin-1")
     assert "2                       AFTabMod" in text
     assert "../shared" not in text.lower()
     made = bg.read(turbine)
@@ -572,7 +575,7 @@ def test_a_pc_file_out_of_reach_is_said(tmp_path):
     bg.write(with_polars(4e6), tmp_path / "blade.htc")
     edit(tmp_path / "blade.htc", "./blade_pc.dat", "../blade_pc.dat")
     made = bg.read(tmp_path / "blade.htc")
-    assert "pc_filename: '../blade_pc.dat' is no file below this folder" in findings(made)
+    assert "pc_filename: '../blade_pc.dat' is no file of this model" in findings(made)
     assert not made.stations[0].airfoil.polars
     notes = Notes()
     assert read_sets(tmp_path, notes) == []
@@ -617,11 +620,14 @@ def test_a_blade_goes_back_into_an_htc_file(tmp_path):
     start, end = (next(k for k, s in enumerate(lines) if w in s) for w in ("c2_def;", "end c2_def"))
     own = HTC.format(c2_def="\n".join(lines[start : end + 1]))
     path = tmp_path / "htc" / "turbine.htc"
-    path.write_text(own)
+    path.write_bytes(own.replace("\n", "\r\n").encode() + b"; stig \xf8ye method\r\n")
     changed = replace(with_polars(4e6, 8e6), twist=Distribution.constant(0.1))
     said = " ".join(map(str, write_into(changed, path, path)))
     assert "st of the blade is that of the blade before" in said
-    text = path.read_text().splitlines()
+    written = path.read_bytes()
+    assert written.endswith(b"; stig \xf8ye method\r\n")
+    assert written.count(b"\n") == written.count(b"\r\n")
+    text = written.decode("latin-1").splitlines()
     assert text[:8] == own.splitlines()[:8]
     for line in own.splitlines():
         if "sec" not in line:

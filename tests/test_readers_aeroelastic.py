@@ -117,7 +117,12 @@ def test_a_twist_table_of_another_blade_is_passed_over(tmp_path):
         ("parts.htc", "3.513081e+00", "1.0", "parts.htc, line 16, c2_def z: got 1 after 2.34226"),
         ("parts.htc", "3.513081e+00", "far", "c2_def z: got 'far', must be a number"),
         ("parts.htc", "3.513081e+00", "", "c2_def: must be rows of sec, number, x, y, z, twist"),
-        ("turbine.htc", "./data/ae.dat", "../data/ae.dat", "ae_filename: got '../data/ae.dat'"),
+        (
+            "turbine.htc",
+            "./data/ae.dat",
+            "../../data/ae.dat",
+            "ae_filename: got '../../data/ae.dat'",
+        ),
         ("turbine.htc", "ae_sets 1 1 1", "ae_sets 4 4 4", "ae.dat: holds no set 4"),
         ("ae.dat", "1 30 r,c", "1 40 r,c", "ae.dat, line 33: must be radius, chord"),
         ("ae.dat", "5.226951603677118e+00", "-1", "ae.dat, line 4, chord: got '-1', allowed"),
@@ -132,14 +137,33 @@ def test_hawc2_files_tell_what_is_wrong(tmp_path, file, old, new, said):
 
 def test_hawc2_findings_tell_what_was_passed_over(tmp_path):
     path = hawc2(tmp_path, "iea15mw")
-    edit(path, "begin aero ;", "continue_in_file ../secret.htc ;\nbegin aero ;")
+    edit(path, "begin aero ;", "continue_in_file ../../secret.htc ;\nbegin aero ;")
     edit(tmp_path / "data" / "ae.dat", "e+01 1\n", "e+01 2\n")
     edit(tmp_path / "data" / "ae.dat", " 1.171835883386072e+02", " 1.301835883386072e+02")
     made = bg.read(path, airfoils=GOLDEN / "iea15mw" / "airfoils")
     said = findings(made)
-    assert "continue_in_file ../secret.htc lies outside of this folder" in said
+    assert "continue_in_file ../../secret.htc lies outside of the model's folders" in said
     assert "names several polar sets" in said
     assert "ends at 130.184 m, c2_def is 117.18" in said
+
+
+def test_a_model_may_continue_in_the_folder_beside_it(tmp_path):
+    """As the published onshore model of the IEA 15 MW does; further away it may not."""
+    for name in ("onshore", "turbine"):
+        (tmp_path / name).mkdir()
+    whole = hawc2(tmp_path / "turbine", "iea15mw")
+    airfoils = GOLDEN / "iea15mw" / "airfoils"
+    before = bg.read(whole, airfoils=airfoils)
+    (tmp_path / "onshore" / "htc").mkdir()
+    path = tmp_path / "onshore" / "htc" / "onshore.htc"
+    for file in whole.parent.glob("*.htc"):
+        file.write_text(file.read_text().replace(" ./", " ../turbine/"))
+    path.write_text(f"continue_in_file ../turbine/htc/{whole.name} ;\n")
+    made = bg.read(path, airfoils=airfoils)
+    assert made.chord(0.3) == before.chord(0.3)
+    path = path.rename(tmp_path / "onshore" / "onshore.htc")
+    with pytest.raises(bg.BladegenError, match="no blade with c2_def"):
+        bg.read(path, airfoils=airfoils)
 
 
 def test_an_htc_file_that_continues_in_itself_ends(tmp_path):

@@ -71,12 +71,13 @@ class _Body:
 
 def recognises(path: Path) -> bool:
     """Tell whether a file is an htc file, whole or in part."""
-    return "begin" in head(path).lower()
+    text = head(path).lower()
+    return "begin" in text or "continue_in_file" in text
 
 
 def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinition | None:
     """Read a blade; None if there are problems, which `notes` then holds."""
-    lines = _commands(path, _bases(path), notes, 0)
+    lines = _commands(path, _bases(path), _reach(path), notes, 0)
     body = _blade_body(lines, notes)
     if body is None:
         return None
@@ -131,7 +132,7 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
 
 def blade_name(path: Path, notes: Notes) -> str | None:
     """Return the name of the main_body that is the blade, lower case; None if there is none."""
-    body = _blade_body(_commands(path, _bases(path), notes, 0), notes)
+    body = _blade_body(_commands(path, _bases(path), _reach(path), notes, 0), notes)
     return None if body is None else body.name
 
 
@@ -141,7 +142,13 @@ def _bases(path: Path) -> list[Path]:
     return [here, here.resolve().parent] if here.resolve().name == "htc" else [here]
 
 
-def _commands(path: Path, bases: list[Path], notes: Notes, depth: int) -> list[_Line]:
+def _reach(path: Path) -> Path:
+    """Return the folder that an htc file's names lead below: models share files with siblings."""
+    here = path.parent.resolve()
+    return here.parents[1] if here.name == "htc" and len(here.parents) > 1 else here
+
+
+def _commands(path: Path, bases: list[Path], reach: Path, notes: Notes, depth: int) -> list[_Line]:
     """Return the commands of an htc file and of those that it continues in."""
     found: list[_Line] = []
     for k, line in enumerate(read_lines(path)):
@@ -156,16 +163,15 @@ def _commands(path: Path, bases: list[Path], notes: Notes, depth: int) -> list[_
         if first != "continue_in_file":
             found.append(_Line(tuple(words), mark + comment, place))
             continue
-        named = referred(words[1], bases) if len(words) > 1 else None
+        named = referred(words[1], bases, reach) if len(words) > 1 else None
         if named is None or depth == MAX_DEPTH:
-            said = (
-                "lies outside of this folder or is not there" if named is None else "nests too deep"
-            )
+            lost = "lies outside of the model's folders or is not there"
+            said = lost if named is None else "nests too deep"
             notes.findings.append(
                 Finding(place, f"continue_in_file {' '.join(words[1:])[:60]} {said}; passed over")
             )
             continue
-        found += _commands(named, bases, notes, depth + 1)
+        found += _commands(named, bases, reach, notes, depth + 1)
         if len(found) > MAX_LINES:
             break
     return found
@@ -241,12 +247,12 @@ def _ae(path: Path, lines: list[_Line], notes: Notes) -> tuple[Array, ...] | Non
     sets = next((line for line in lines if line.words[0].lower() == "ae_sets"), None)
     wanted = number(sets.words[1]) if sets is not None and len(sets.words) > 1 else 1
     name = named.words[1] if named is not None and len(named.words) > 1 else ""
-    found = referred(name, _bases(path)) if name else None
+    found = referred(name, _bases(path), _reach(path)) if name else None
     if found is None:
         own = path.with_name(f"{path.stem}{AE_SUFFIX}")
         if not own.is_file():
             notes.problems.append(
-                f"ae_filename: got {name[:60] or 'nothing'!r}, must be a file below this folder; "
+                f"ae_filename: got {name[:60] or 'nothing'!r}, must be a file of this model; "
                 f"or put chord and thickness into {own.name} beside this file"
             )
             return None
@@ -298,9 +304,9 @@ def _profiles(path: Path, lines: list[_Line], notes: Notes) -> list[list[Profile
     name = named.words[1] if named is not None and len(named.words) > 1 else ""
     if not name:
         return []
-    found = referred(name, _bases(path))
+    found = referred(name, _bases(path), _reach(path))
     if found is None:
-        said = f"{name[:60]!r} is no file below this folder; polars left out"
+        said = f"{name[:60]!r} is no file of this model; polars left out"
         notes.findings.append(Finding("pc_filename", said))
         return []
     return profile_sets(found, notes)

@@ -31,8 +31,15 @@ def head(path: Path) -> str:
         return ""
 
 
-def read_lines(path: Path) -> list[str]:
+def read_lines(path: Path, errors: str = "replace") -> list[str]:
     """Return a file's lines.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    errors : str
+        What becomes of bytes that are not UTF-8: "surrogateescape" keeps them for writing.
 
     Raises
     ------
@@ -48,7 +55,7 @@ def read_lines(path: Path) -> list[str]:
         raise FileError(str(path), [f"cannot be read: {error.strerror}"]) from None
     if len(content) > MAX_BYTES:
         raise FileError(str(path), [f"is larger than {MAX_BYTES >> 20} MB, the most that is read"])
-    return content.decode("utf-8-sig", errors="replace").splitlines()
+    return content.decode("utf-8-sig", errors=errors).splitlines()
 
 
 def referred(name: str, bases: Sequence[Path], below: Path | None = None) -> Path | None:

@@ -15,7 +15,7 @@ from bladegen.readers.document import Notes
 from bladegen.readers.hawc2 import AE_SUFFIX, PC_SUFFIX, blade_name
 from bladegen.readers.text_file import read_lines
 from bladegen.writers import hawc2
-from bladegen.writers.text import write_lines
+from bladegen.writers.text import line_end, write_lines
 
 __all__ = ["write_into_htc"]
 
@@ -44,7 +44,7 @@ def write_into_htc(definition: BladeDefinition, htc: Path, path: Path) -> tuple[
     ExportError
         If airfoils have no polars.
     """
-    lines = read_lines(htc)
+    lines, end = read_lines(htc, errors="surrogateescape"), line_end(htc)
     notes = Notes()
     name = blade_name(htc, notes)
     if name is None:
@@ -86,10 +86,11 @@ def write_into_htc(definition: BladeDefinition, htc: Path, path: Path) -> tuple[
             result.append(f"  {word} {named[word]} ;")
         else:
             result.append(line)
-    write_lines(path, result)
+    write_lines(path, result, end)
     missing = [f"{word} {value}" for word, value in named.items() if word not in met]
     if missing:
-        findings.append(Finding("aero", f"is not all in this file; give it {', '.join(missing)}"))
+        said = f"is not all in this file; give it {', '.join(missing)}"
+        findings.append(Finding("aero", f"{said} (folders as HAWC2 sees them from where it runs)"))
     findings.append(Finding("structure", "st of the blade is that of the blade before"))
     return tuple(finding for finding in findings if finding.where != "htc")
 

@@ -14,7 +14,7 @@ from bladegen.readers.airfoil_folder import PUT_BACK
 from bladegen.readers.openfast_model import PART_SUFFIX, is_main
 from bladegen.readers.text_file import read_lines
 from bladegen.writers import openfast
-from bladegen.writers.text import write_lines
+from bladegen.writers.text import line_end, write_lines
 
 __all__ = ["write_into_main"]
 
@@ -47,7 +47,7 @@ def write_into_main(definition: BladeDefinition, main: Path, path: Path) -> tupl
     ExportError
         If airfoils have no polars.
     """
-    lines = read_lines(main)
+    lines, end = read_lines(main, errors="surrogateescape"), line_end(main)
     labels = {match[4] for match in map(_ENTRY.match, lines) if match}
     missing = [label for label in NEEDED if label not in labels]
     if not is_main("\n".join(lines)) or missing:
@@ -63,7 +63,7 @@ def write_into_main(definition: BladeDefinition, main: Path, path: Path) -> tupl
     part = blade.with_name(f"{blade.stem}{PART_SUFFIX}")
     new = read_lines(part)
     part.unlink()  # its lines go into the main input
-    write_lines(path, _replaced(lines, new, blade.name))
+    write_lines(path, _replaced(lines, new, blade.name), end)
     said = [finding for finding in findings if finding.where != "AFNames"]
     if path.parent.resolve() != main.parent.resolve():
         said.append(Finding(path.name, f"names other files as from {main.parent}, as before"))

@@ -5,8 +5,9 @@ from pathlib import Path
 
 from bladegen.files import replacing
 
-__all__ = ["aligned", "exact", "one_line", "write_lines"]
+__all__ = ["aligned", "exact", "line_end", "one_line", "write_lines"]
 
+LONGEST = 1 << 20  # bytes of a line that are looked at
 WIDTH = 23  # of "-1.2345678901234567e-123"
 
 
@@ -28,7 +29,17 @@ def one_line(text: str) -> str:
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
-def write_lines(path: Path, lines: Sequence[str]) -> None:
-    """Write lines to a file, through a temporary one beside it."""
+def line_end(path: Path) -> str:
+    """Return how the lines of a file end: as its first one does."""
+    with path.open("rb") as stream:
+        return "\r\n" if stream.readline(LONGEST).endswith(b"\r\n") else "\n"
+
+
+def write_lines(path: Path, lines: Sequence[str], end: str = "\n") -> None:
+    """Write lines to a file, through a temporary one beside it.
+
+    Bytes that `read_lines` kept by "surrogateescape" are written as they were.
+    """
     with replacing(path) as temporary:
-        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        text = "".join(f"{line}{end}" for line in lines)
+        temporary.write_bytes(text.encode("utf-8", errors="surrogateescape"))

@@ -232,7 +232,8 @@ def _value(rng: Random, now: Any) -> Any:
             return rng.choice((True, 1, 0, "", None))
         if isinstance(now, int | float):
             if rng.random() < 0.5:
-                return now * rng.choice((-1.0, 0.0, 0.5, 0.999, 1.001, 2.0, 10.0))
+                near = now if isinstance(now, float) else min(max(now, -(10**300)), 10**300)
+                return near * rng.choice((-1.0, 0.0, 0.5, 0.999, 1.001, 2.0, 10.0))
             return _number(rng)
         if isinstance(now, str):
             return rng.choice(NAMES)

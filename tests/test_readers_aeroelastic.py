@@ -10,6 +10,7 @@ from refusals import findings, problems
 import bladegen as bg
 from bladegen.errors import FileError
 from bladegen.readers import text_file
+from bladegen.readers.hawc2 import _finder
 
 
 def edit(path: Path, old: str, new: str, count: int = 1) -> Path:
@@ -164,6 +165,20 @@ def test_a_model_may_continue_in_the_folder_beside_it(tmp_path):
     path = path.rename(tmp_path / "onshore" / "onshore.htc")
     with pytest.raises(bg.BladegenError, match="no blade with c2_def"):
         bg.read(path, airfoils=airfoils)
+
+
+def test_names_of_a_model_at_the_top_of_a_disk_lead_below_it_only(monkeypatch):
+    reached = []
+
+    def referred(name, bases, below=None):
+        reached.append((bases, below))
+
+    monkeypatch.setattr("bladegen.readers.hawc2.referred", referred)
+    for path in ("/models/one/htc/a.htc", "/one/htc/a.htc", "/htc/a.htc"):
+        _finder(Path(path))("b.htc")
+    one = [Path("/one/htc"), Path("/one")]
+    assert reached[0][1] == Path("/models")
+    assert reached[1:] == [(one, Path("/one")), ([Path("/htc")], None)]
 
 
 def test_an_htc_file_that_continues_in_itself_ends(tmp_path):

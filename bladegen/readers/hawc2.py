@@ -9,7 +9,9 @@ meets theirs.
 """
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +50,7 @@ WHOLE = range(1, 10_000)  # numbers of polar sets
 SEVERAL = "names several polar sets; shapes go by thickness alone"
 MAX_DEPTH = 4  # of continue_in_file
 MAX_LINES = 500_000
+Finder = Callable[[str], Path | None]
 _PITCH_AXIS = re.compile(r";\s*pitch axis\s+([-+0-9.eE]+)")
 
 
@@ -77,12 +80,13 @@ def recognises(path: Path) -> bool:
 
 def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinition | None:
     """Read a blade; None if there are problems, which `notes` then holds."""
-    lines = _commands(path, _bases(path), _reach(path), notes, 0)
+    find = _finder(path)
+    lines = _commands(path, find, notes, 0)
     body = _blade_body(lines, notes)
     if body is None:
         return None
     columns = _centreline(body, notes)
-    table = _ae(path, lines, notes)
+    table = _ae(path, lines, find, notes)
     if columns is None or table is None:
         return None
     folder = beside(path, airfoils, notes)
@@ -91,7 +95,7 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
     if notes.problems:
         return None
     (ahead, downwind, z, turn, pitch_axis), (radius, chord, thickness, polar_sets) = columns, table
-    sets = _profiles(path, lines, notes)
+    sets = _profiles(lines, find, notes)
     eta = (z - z[0]) / (z[-1] - z[0])
     spans, lengths = curve_length(ahead, downwind, z)
     stated, measured = float(radius[-1]), float(lengths[-1])
@@ -132,23 +136,26 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
 
 def blade_name(path: Path, notes: Notes) -> str | None:
     """Return the name of the main_body that is the blade, lower case; None if there is none."""
-    body = _blade_body(_commands(path, _bases(path), _reach(path), notes, 0), notes)
+    body = _blade_body(_commands(path, _finder(path), notes, 0), notes)
     return None if body is None else body.name
 
 
-def _bases(path: Path) -> list[Path]:
-    """Return the folders that names in an htc file start from: HAWC2 runs beside `htc/`."""
-    here = path.parent
-    return [here, here.resolve().parent] if here.resolve().name == "htc" else [here]
+def _finder(path: Path) -> Finder:
+    """Return what finds the files that an htc file names.
 
-
-def _reach(path: Path) -> Path:
-    """Return the folder that an htc file's names lead below: models share files with siblings."""
+    HAWC2 runs beside ``htc/``, so names start there or from the file's own folder.  They lead
+    below that folder; in a model with ``htc/`` also to the folders beside the model's, which
+    models share.
+    """
     here = path.parent.resolve()
-    return here.parents[1] if here.name == "htc" and len(here.parents) > 1 else here
+    model, disk = here.parent, Path(here.anchor)
+    if here.name != "htc" or model == disk:
+        return partial(referred, bases=[here])
+    below = model if model.parent == disk else model.parent
+    return partial(referred, bases=[here, model], below=below)
 
 
-def _commands(path: Path, bases: list[Path], reach: Path, notes: Notes, depth: int) -> list[_Line]:
+def _commands(path: Path, find: Finder, notes: Notes, depth: int) -> list[_Line]:
     """Return the commands of an htc file and of those that it continues in."""
     found: list[_Line] = []
     for k, line in enumerate(read_lines(path)):
@@ -163,7 +170,7 @@ def _commands(path: Path, bases: list[Path], reach: Path, notes: Notes, depth: i
         if first != "continue_in_file":
             found.append(_Line(tuple(words), mark + comment, place))
             continue
-        named = referred(words[1], bases, reach) if len(words) > 1 else None
+        named = find(words[1]) if len(words) > 1 else None
         if named is None or depth == MAX_DEPTH:
             lost = "lies outside of the model's folders or is not there"
             said = lost if named is None else "nests too deep"
@@ -171,7 +178,7 @@ def _commands(path: Path, bases: list[Path], reach: Path, notes: Notes, depth: i
                 Finding(place, f"continue_in_file {' '.join(words[1:])[:60]} {said}; passed over")
             )
             continue
-        found += _commands(named, bases, reach, notes, depth + 1)
+        found += _commands(named, find, notes, depth + 1)
         if len(found) > MAX_LINES:
             break
     return found
@@ -241,13 +248,16 @@ def _centreline(
     return x, y, z, twist, pitch_axis
 
 
-def _ae(path: Path, lines: list[_Line], notes: Notes) -> tuple[Array, ...] | None:
+def _value(lines: list[_Line], command: str) -> str:
+    """Return what stands behind the first command of a name, "" if nothing does."""
+    found = next((line for line in lines if line.words[0].lower() == command), None)
+    return found.words[1] if found is not None and len(found.words) > 1 else ""
+
+
+def _ae(path: Path, lines: list[_Line], find: Finder, notes: Notes) -> tuple[Array, ...] | None:
     """Return radius and chord [m], thickness [%] and polar set of the blade's ae rows."""
-    named = next((line for line in lines if line.words[0].lower() == "ae_filename"), None)
-    sets = next((line for line in lines if line.words[0].lower() == "ae_sets"), None)
-    wanted = number(sets.words[1]) if sets is not None and len(sets.words) > 1 else 1
-    name = named.words[1] if named is not None and len(named.words) > 1 else ""
-    found = referred(name, _bases(path), _reach(path)) if name else None
+    name, wanted = _value(lines, "ae_filename"), number(_value(lines, "ae_sets") or "1")
+    found = find(name)
     if found is None:
         own = path.with_name(f"{path.stem}{AE_SUFFIX}")
         if not own.is_file():
@@ -298,13 +308,12 @@ def _ae_set(
     return radius, chord, thickness, np.array(sets)
 
 
-def _profiles(path: Path, lines: list[_Line], notes: Notes) -> list[list[Profile]]:
+def _profiles(lines: list[_Line], find: Finder, notes: Notes) -> list[list[Profile]]:
     """Return the sets of the pc file that aero names; none if it is out of reach."""
-    named = next((line for line in lines if line.words[0].lower() == "pc_filename"), None)
-    name = named.words[1] if named is not None and len(named.words) > 1 else ""
+    name = _value(lines, "pc_filename")
     if not name:
         return []
-    found = referred(name, _bases(path), _reach(path))
+    found = find(name)
     if found is None:
         said = f"{name[:60]!r} is no file of this model; polars left out"
         notes.findings.append(Finding("pc_filename", said))

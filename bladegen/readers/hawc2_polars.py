@@ -88,8 +88,7 @@ def with_profiles(
         met.setdefault(wanted, []).append(thickness)
         key = id(station.airfoil), wanted, round(thickness, 2)
         if key not in made:
-            profiles = sets[wanted - 1] if 1 <= wanted <= len(sets) else []
-            polar = _at(profiles, thickness)
+            polar = _at(_numbered(sets, wanted), thickness)
             own = station.airfoil
             if polar is None:
                 bare.append(own.name)
@@ -106,7 +105,7 @@ def with_profiles(
     unmet = {
         f"{profile.thickness:g} %"
         for wanted, places in met.items()
-        for profile in (sets[wanted - 1] if 1 <= wanted <= len(sets) else [])
+        for profile in _numbered(sets, wanted)
         if min(places) < profile.thickness < max(places)
         and min(abs(place - profile.thickness) for place in places) > ALIKE
     }
@@ -114,6 +113,11 @@ def with_profiles(
         said = f"profiles as thick as no airfoil are left out: {', '.join(sorted(unmet)[:4])}"
         notes.findings.append(Finding("pc", said))
     return tuple(result)
+
+
+def _numbered(sets: list[list[Profile]], number: int) -> list[Profile]:
+    """Return the profiles of a set by its number, from 1 on; none if there is no such set."""
+    return sets[number - 1] if 1 <= number <= len(sets) else []
 
 
 def _at(profiles: list[Profile], thickness: float) -> Polar | None:

@@ -13,15 +13,14 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.definition import Airfoil, BladeDefinition
-from bladegen.extension import extended
+from bladegen.extension import STALL, extended
 from bladegen.polars import Polar, blended
 
-__all__ = ["Between", "between", "completed", "of_their_own"]
+__all__ = ["Between", "between", "completed", "of_their_own", "without_polars"]
 
 BY_THICKNESS = 1e-3  # of the chord; polars are blended by thickness where it differs by more
 WHOLE = np.radians(1.0)  # tables that end nearer to half a turn than this are drawn out to it
 ENDS = (0.0, 1.0)
-STALL = np.radians(3.0)  # stalls nearer to 0 than this are none
 
 
 @dataclass(frozen=True)
@@ -99,6 +98,11 @@ def between(definition: BladeDefinition, eta: float) -> Between:
         if abs(ends[1] - ends[0]) > BY_THICKNESS:
             weight = float(np.clip((here - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0))
     return Between(one.airfoil, other.airfoil, weight)
+
+
+def without_polars(definition: BladeDefinition) -> list[str]:
+    """Return the names of a blade's airfoils that have no polars, sorted."""
+    return sorted({s.airfoil.name for s in definition.stations if not s.airfoil.polars})
 
 
 def of_their_own(polars: Sequence[Polar]) -> bool:

@@ -17,18 +17,25 @@ import numpy as np
 from bladegen.arrays import Array
 from bladegen.definition import Airfoil, BladeDefinition, Station
 from bladegen.errors import BladegenError, Finding
-from bladegen.extension import extended
+from bladegen.extension import STALL, extended
 from bladegen.landmarks import landmarks
 from bladegen.polars import ESTIMATED, Polar
 from bladegen.sections import SectionSplines
 
-__all__ = ["POLICIES", "available", "chord_reynolds", "estimated", "reynolds_at", "with_polars"]
+__all__ = [
+    "POLICIES",
+    "available",
+    "chord_reynolds",
+    "estimated",
+    "force_centre",
+    "reynolds_at",
+    "with_polars",
+]
 
 POLICIES = ("estimate", "estimate-all", "keep", "none")
 ESTIMATING = ("estimate", "estimate-all")
 MODEL = "xlarge"
 ANGLES = np.linspace(-20.0, 20.0, 81)  # deg; its confidence is lost beyond 25
-STALL = np.radians(3.0)  # stalls nearer to 0 than this are none
 THICK = 0.4  # of the chord: thicker sections are mixed with a cylinder
 CYLINDER_DRAG = 0.5  # of a cylinder beyond its drag crisis, as in the NREL 5 MW's root
 QUARTER, HALF = 0.25, 0.5  # chords; where forces act on an airfoil and on a cylinder
@@ -92,11 +99,11 @@ def with_polars(
         elif policy == "estimate-all" or (policy == "estimate" and foreign):
             progress(f"estimating the polar of {airfoil.name}")
             at = reynolds or reynolds_at(definition, station)
-            centre = QUARTER + (HALF - QUARTER) * _rounded(_flat(airfoil)[1])
+            points, thickness = _flat(airfoil)
             airfoil = replace(
                 airfoil,
-                polars=(estimated(airfoil, at),),
-                aerodynamic_center=round(centre, DIGITS),
+                polars=(_estimated(points, thickness, at),),
+                aerodynamic_center=round(float(force_centre(thickness)), DIGITS),
             )
         elif airfoil.polars and foreign:
             borrowed += 1
@@ -138,7 +145,21 @@ def chord_reynolds(definition: BladeDefinition, eta: float) -> float:
 
 def estimated(airfoil: Airfoil, reynolds: float) -> Polar:
     """Return the estimated polar of an airfoil at a Reynolds number."""
-    points, thickness = _flat(airfoil)
+    return _estimated(*_flat(airfoil), reynolds)
+
+
+def force_centre(thickness: float | Array) -> Array:
+    """Return where forces act on sections of a relative thickness, of the chord.
+
+    At the quarter chord, towards the round root at the half chord, about which a cylinder has no
+    moment, as public polar sets have it.
+    """
+    centre: Array = np.asarray(np.interp(thickness, [THICK, 1.0], [QUARTER, HALF]))
+    return centre
+
+
+def _estimated(points: Array, thickness: float, reynolds: float) -> Polar:
+    """Return the estimated polar of landmarks as `_flat` returns them."""
     mixed = _rounded(thickness)
     thinned = points * [1.0, min(1.0, THICK / thickness)]
     alpha, cl, cd, cm, confidence = _neuralfoil(thinned, reynolds)

@@ -19,11 +19,12 @@ import numpy as np
 
 from bladegen.arrays import Array
 
-__all__ = ["ASPECT_RATIO", "extended", "normal_moment"]
+__all__ = ["ASPECT_RATIO", "STALL", "extended", "normal_moment"]
 
 ASPECT_RATIO = 10.0  # usual for blades; gives the drag 1.29 at 90 degrees
 REVERSED = 0.7  # of the lift, where the flow meets the trailing edge
 STEP = np.radians(5.0)
+STALL = np.radians(3.0)  # stalls nearer to 0 than this are none
 QUARTER = 0.25
 Coefficients = tuple[Array, Array, Array]
 

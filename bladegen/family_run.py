@@ -192,8 +192,9 @@ def _make(order: Order, number: int) -> Made:
     with threadpool_limits(1):  # the same sums in the same order, whatever the machine
         block = _block(order, index)
         rows = _rows(family, block)
+        faults = _faults(order, block)
         for suffix in order.suffixes:
-            rows |= _exported(order, block, suffix)
+            rows |= _exported(order, block, suffix, faults)
     order.place.write_block(number, block, rows)
     return number, _drawn_again(family, block)
 
@@ -247,17 +248,29 @@ def _rows(family: Family, block: Block) -> dict[str, Any]:
     return rows
 
 
-def _exported(order: Order, block: Block, suffix: str) -> dict[str, Any]:
+def _faults(order: Order, block: Block) -> dict[int, str]:
+    """Return by place what is wrong, between a block's sections, with variants to be written."""
+    found = {}
+    for place in block.index[block.valid].tolist() if order.suffixes else ():
+        try:
+            order.family.named(block, place).require_sound()
+        except PerturbationError as error:
+            found[place] = str(error)
+    return found
+
+
+def _exported(order: Order, block: Block, suffix: str, faults: dict[int, str]) -> dict[str, Any]:
     """Write the sound variants in one format; return the columns that say so."""
     names, digests, problems = [], [], []
     for place, valid in zip(block.index, block.valid, strict=True):
         name, digest, problem = "", "", ""
-        if valid:
+        if valid and place in faults:
+            problem = faults[place]
+        elif valid:
             path = order.place.blades / f"{order.family.name(int(place))}{suffix}"
             problem = _export(order, order.family.named(block, int(place)), path)
             made = exporters.aside(path) if problem else path
-            if made.exists():
-                name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
+            name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
         names.append(name)
         digests.append(digest)
         problems.append(problem)
@@ -266,11 +279,11 @@ def _exported(order: Order, block: Block, suffix: str) -> dict[str, Any]:
 
 
 def _export(order: Order, blade: Blade, path: Path) -> str:
-    """Write one file; return what is wrong, a file out of tolerance kept aside, or ""."""
+    """Write one file; return what is wrong with it, kept beside its name, or ""."""
     options = replace(order.options, timestamp=TIMESTAMP, spans=order.spans)
     try:
-        exporters.write(exporters.Products(blade.require_sound(), options), path)
-    except (PerturbationError, ToleranceError) as error:
+        exporters.write(exporters.Products(blade, options), path)
+    except ToleranceError as error:
         return str(error).replace(f"{path.parent}/", "")
     return ""
 

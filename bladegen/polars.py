@@ -18,6 +18,7 @@ __all__ = ["BORROWED", "ESTIMATED", "Polar", "blended"]
 BORROWED = "of the baseline"  # how the source of such a polar begins, in files too
 ESTIMATED = "estimate"  # and that of one that was estimated
 FEWEST = 2
+FIGURES = ("alpha", "cl", "cd", "cm")
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Polar:
     parameters: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("alpha", "cl", "cd", "cm"):
+        for name in FIGURES:
             values = readonly(getattr(self, name))
             if values.ndim != 1 or len(values) != len(self.alpha) or len(values) < FEWEST:
                 raise DefinitionError(
@@ -72,6 +73,12 @@ class Polar:
     def is_estimate(self) -> bool:
         """Whether it was estimated, not measured or published."""
         return self.source.startswith(ESTIMATED)
+
+    def has_figures_of(self, other: "Polar") -> bool:
+        """Tell whether angles and coefficients are the same, whatever is said of them."""
+        return self is other or all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in FIGURES
+        )
 
     def at(self, alpha: Array) -> tuple[Array, Array, Array]:
         """Return lift, drag and moment at angles [rad], linear between the polar's own."""

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
 from bladegen import cad, cad_files, checks, mesh
-from bladegen.errors import BladegenError
+from bladegen.errors import BladegenError, PerturbationError
 from bladegen.families import BLOCK
 from bladegen.family_files import FamilyFolder, sections_digest
 from bladegen.family_run import Order, run
@@ -236,6 +236,21 @@ def test_two_runs_in_one_folder_are_refused(tmp_path):
     place = FamilyFolder(tmp_path)
     with place.alone(), pytest.raises(BladegenError, match="another run is writing"):
         run(Order(planned(), tmp_path))
+
+
+def test_variants_that_fold_between_their_sections_are_listed_without_files(tmp_path, monkeypatch):
+    def folded(blade):
+        if blade.name.endswith("1"):
+            raise PerturbationError(f"{blade.name}: the section at eta = 0.5 crosses itself")
+        return blade
+
+    monkeypatch.setattr(bg.Blade, "require_sound", folded)
+    run(Order(planned(count=3, reach=0.5), tmp_path, ("stl", "csv")))
+    table = pq.read_table(tmp_path / "manifest.parquet").to_pydict()
+    for kind in ("stl", "csv"):
+        assert [bool(name) for name in table[f"{kind}_file"]] == [True, False, True]
+        assert "crosses itself" in table[f"{kind}_problem"][1]
+        assert table[f"{kind}_sha256"][1] == table[f"{kind}_problem"][0] == ""
 
 
 def test_files_of_each_variant_are_written_and_listed(tmp_path):

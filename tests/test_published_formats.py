@@ -6,10 +6,10 @@ from numpy.testing import assert_allclose
 from published_formats import GOLDEN, column, hawc2, openfast, windio
 
 import bladegen as bg
+from bladegen import estimates
 from bladegen.arrays import Array
 from bladegen.conventions import slope_degrees
 from bladegen.definition import BladeDefinition
-from bladegen.writers import openfast as openfast_writer
 
 
 def line(definition: BladeDefinition, z: Array, fraction: float) -> Array:
@@ -79,7 +79,8 @@ def test_our_aerodyn_file_has_the_published_figures_where_both_have_nodes(tmp_pa
         published = column("iea15mw/openfast_blade", name)[:-1]
         assert_allclose(ours[at, k][outer], published[outer], rtol=0, atol=1e-13)
     assert reader.chord.grid.size == 50
-    assert openfast_writer.QUARTER == 0.25
+    assert estimates.QUARTER == 0.25
+    assert estimates.force_centre(0.2) == 0.25
 
 
 def test_hawc2_gives_the_bundled_blade_within_its_interpolation(tmp_path):

@@ -157,14 +157,15 @@ def turbine(path: Path, notes: Notes) -> tuple[Main, Rotor] | None:
     root = folder if folder.parent == Path(folder.anchor) else folder.parent
     name = _value(lines, "AeroFile")
     found = referred(name or "", [folder], root)
-    if found is None or not is_main("\n".join(read_lines(found))):
+    named = [] if found is None else read_lines(found)
+    if found is None or not is_main("\n".join(named)):
         what = "AeroDyn's main input" + (
             " (with ADBlFile(1))" if found else f", a file in {root.name or '.'} or below it"
         )
         notes.problems.append(f"AeroFile: got {(name or 'nothing')[:SHOWN]!r}, must be {what}")
         return None
     structure = _value(lines, "EDFile")
-    return Main(read_lines(found), found.parent, root), _rotor(structure, folder, root, notes)
+    return Main(named, found.parent, root), _rotor(structure, folder, root, notes)
 
 
 def _rotor(name: str | None, folder: Path, root: Path, notes: Notes) -> Rotor:

@@ -54,15 +54,8 @@ class Tables:
     def alike(self, other: "Tables") -> bool:
         """Tell whether both hold the same figures and say the same of them."""
         return len(self.polars) == len(other.polars) and all(
-            one is two
-            or (
-                (one.reynolds, one.source, one.parameters)
-                == (two.reynolds, two.source, two.parameters)
-                and all(
-                    np.array_equal(getattr(one, part), getattr(two, part))
-                    for part in ("alpha", "cl", "cd", "cm")
-                )
-            )
+            (one.reynolds, one.source, one.parameters) == (two.reynolds, two.source, two.parameters)
+            and one.has_figures_of(two)
             for one, two in zip(self.polars, other.polars, strict=True)
         )
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.blade import Blade
+from bladegen.blending import without_polars
 from bladegen.conventions import curve_length, line_of_axis
 from bladegen.definition import THICKNESS_RIPPLE, Airfoil, BladeDefinition, Station
 from bladegen.errors import Finding
@@ -20,12 +21,11 @@ from bladegen.readers.hawc2 import AE_SUFFIX, HALF, PC_SUFFIX
 from bladegen.resampling import common_grid, shape_grid
 from bladegen.writers.airfoil_folder import write_airfoils
 from bladegen.writers.hawc2_polars import Sets, profile_sets
-from bladegen.writers.text import aligned, exact, write_lines
+from bladegen.writers.text import aligned, exact, few, write_lines
 
-__all__ = ["write"]
+__all__ = ["parts", "write"]
 
 LANDMARKS = 401
-SHOWN = 4  # airfoils that a finding names
 
 
 def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
@@ -33,6 +33,13 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
 
     Returns what the files cannot hold.
     """
+    lines, findings = parts(definition, path)
+    write_lines(path, lines)
+    return findings
+
+
+def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Finding, ...]]:
+    """Write the files that the htc part at `path` names; return its lines, and the findings."""
     eta, loss = common_grid(definition, over_z=True)
     eta, rthick, stations = _shapes(definition, eta)
     chord, twist, axis = definition.chord(eta), definition.twist(eta), definition.axis(eta)
@@ -57,7 +64,7 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
     write_lines(ae, _ae(radius, chord, rthick, [1] * len(eta) if sets is None else sets.numbers))
     centreline = np.stack([-y, x, z, -np.degrees(twist)], axis=1)
     named = "" if sets is None else pc.name
-    write_lines(path, _htc(definition, path, centreline, behind / chord, named))
+    lines = _htc(definition, path, centreline, behind / chord, named)
     found = [
         Finding(
             "c2_def",
@@ -67,7 +74,7 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
         Finding("airfoils", f"HAWC2 has no shapes; they stand in {folder.name}"),
         *_polar_findings(definition, stations, at, sets, pc.name),
     ]
-    return (*found, *_findings(definition))
+    return lines, (*found, *_findings(definition))
 
 
 def _shapes(definition: BladeDefinition, eta: Array) -> tuple[Array, Array, tuple[Station, ...]]:
@@ -150,13 +157,14 @@ def _polar_findings(
         if sets.count > 1:
             said.append("one where thickness turns or stays and polars change; ae names them")
         if several:
-            said.append(f"of several Reynolds numbers the one nearest the chord's: {_few(several)}")
+            said.append(
+                f"of several Reynolds numbers the one nearest the chord's: {few(sorted(several))}"
+            )
         if sets.moved:
-            said.append(f"moments brought to the quarter chord: {_few(set(sets.moved))}")
+            said.append(f"moments brought to the quarter chord: {few(sorted(set(sets.moved)))}")
         return [Finding("pc", "; ".join(said))]
-    bare = {s.airfoil.name for s in definition.stations if not s.airfoil.polars}
     every = all(not s.airfoil.polars for s in definition.stations)
-    why = "there are none" if every else f"{_few(bare)} have none"
+    why = "there are none" if every else f"{few(without_polars(definition))} have none"
     found = [Finding("pc", f"polars are not written: {why}; yours must be by thickness")]
     alike: set[str] = set()
     for one, other in pairwise(stations):
@@ -169,15 +177,11 @@ def _polar_findings(
         found.append(
             Finding(
                 "airfoils",
-                f"not thinner than their inner neighbours: {_few(alike)}; HAWC2 tells polars by "
-                "thickness alone, so these need a polar set of their own",
+                f"not thinner than their inner neighbours: {few(sorted(alike))}; HAWC2 tells "
+                "polars by thickness alone, so these need a polar set of their own",
             )
         )
     return found
-
-
-def _few(names: set[str]) -> str:
-    return ", ".join(sorted(names)[:SHOWN]) + (" and more" if len(names) > SHOWN else "")
 
 
 def _findings(definition: BladeDefinition) -> list[Finding]:

@@ -134,19 +134,13 @@ def _runs(profiles: Sequence[_Profile]) -> list[_Run]:
         run = runs[-1]
         last = run.profiles[-1]
         if abs(profile.thickness - last.thickness) < RIPPLE:
-            if not _alike(last.polar, profile.polar):
+            if not last.polar.has_figures_of(profile.polar):
                 runs.append(_Run(0.5 * (before.eta + profile.eta), [profile]))
         elif run.takes(profile):
             run.profiles.append(profile)
         else:
             runs.append(_Run(before.eta, [last, profile]))
     return runs
-
-
-def _alike(one: Polar, other: Polar) -> bool:
-    """Tell whether polars hold the same figures."""
-    parts = ("alpha", "cl", "cd", "cm")
-    return one is other or all(np.array_equal(getattr(one, p), getattr(other, p)) for p in parts)
 
 
 def _whole(run: Sequence[_Profile], least: float, round_: _Profile | None) -> list[_Profile]:

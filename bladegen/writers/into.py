@@ -258,8 +258,12 @@ def _airfoils(
             updated.append(airfoil["name"])
     for names, done in ((added, "added"), (updated, "get other polars, their shapes as they were")):
         if names:
-            more = f" and {len(names) - 3} more" if len(names) > 3 else ""
-            yield Finding("airfoils", f"{len(names)} {done}: {', '.join(names[:3])}{more}")
+            yield Finding("airfoils", f"{len(names)} {done}: {_first(names)}")
+
+
+def _first(names: list[str]) -> str:
+    """Return the first three of some names, and how many more there are."""
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
 
 
 def _read(entry: Any, polars: Callable[[Airfoil], list[Document]]) -> list[Document]:
@@ -309,11 +313,10 @@ def _doubts(
     )
     bare = _without_polars(full)
     if bare:
-        shown = ", ".join(bare[:3]) + (f" and {len(bare) - 3} more" if len(bare) > 3 else "")
         yield Finding(
             "polars",
-            f"none for {len(bare)} airfoils of the blade, without which WISDEM stops ({shown}); "
-            "--polars estimate makes some",
+            f"none for {len(bare)} airfoils of the blade, without which WISDEM stops "
+            f"({_first(bare)}); --polars estimate makes some",
         )
     shape = blade.get("outer_shape")
     if isinstance(shape, Mapping) and "surface" in shape:

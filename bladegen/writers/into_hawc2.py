@@ -9,12 +9,13 @@ names start there.
 from pathlib import Path
 
 from bladegen.definition import BladeDefinition
-from bladegen.errors import ExportError, FileError, Finding
+from bladegen.errors import FileError, Finding
 from bladegen.readers.airfoil_folder import PUT_BACK
 from bladegen.readers.document import Notes
 from bladegen.readers.hawc2 import AE_SUFFIX, PC_SUFFIX, blade_name
 from bladegen.readers.text_file import read_lines
 from bladegen.writers import hawc2
+from bladegen.writers.polars import require_polars
 from bladegen.writers.text import line_end, write_lines
 
 __all__ = ["write_into_htc"]
@@ -49,12 +50,7 @@ def write_into_htc(definition: BladeDefinition, htc: Path, path: Path) -> tuple[
     name = blade_name(htc, notes)
     if name is None:
         raise FileError(str(htc), notes.shown())
-    bare = sorted({s.airfoil.name for s in definition.stations if not s.airfoil.polars})
-    if bare:
-        raise ExportError(
-            f"{path}: HAWC2 needs polars, {', '.join(bare[:4])} have none; --polars estimate "
-            "makes some"
-        )
+    require_polars(definition, path, "HAWC2")
     blocks = _blocks(lines)
     own = [
         k for k, (inside, body) in enumerate(blocks) if inside[-1:] == ["c2_def"] and body == name
@@ -65,10 +61,9 @@ def write_into_htc(definition: BladeDefinition, htc: Path, path: Path) -> tuple[
             [f"holds no c2_def of {name}; name the file that it continues in instead"],
         )
     part = path.with_name(f"{path.stem}{PUT_BACK}.htc")
-    findings = list(hawc2.write(definition, part))
-    new = read_lines(part)
+    new, found = hawc2.parts(definition, part)
+    findings = list(found)
     sections = [line for (at, _), line in zip(_blocks(new), new, strict=True) if "c2_def" in at]
-    part.unlink()  # its lines go into the htc file
     here = "./htc/" if path.resolve().parent.name == "htc" else "./"
     named = {
         "ae_filename": f"{here}{part.stem}{AE_SUFFIX}",

@@ -9,11 +9,12 @@ import re
 from pathlib import Path
 
 from bladegen.definition import BladeDefinition
-from bladegen.errors import ExportError, FileError, Finding
+from bladegen.errors import FileError, Finding
 from bladegen.readers.airfoil_folder import PUT_BACK
-from bladegen.readers.openfast_model import PART_SUFFIX, is_main
+from bladegen.readers.openfast_model import is_main
 from bladegen.readers.text_file import read_lines
 from bladegen.writers import openfast
+from bladegen.writers.polars import require_polars
 from bladegen.writers.text import line_end, write_lines
 
 __all__ = ["write_into_main"]
@@ -52,17 +53,9 @@ def write_into_main(definition: BladeDefinition, main: Path, path: Path) -> tupl
     missing = [label for label in NEEDED if label not in labels]
     if not is_main("\n".join(lines)) or missing:
         raise FileError(str(main), [f"is no main input of AeroDyn: {', '.join(missing)} missing"])
-    bare = sorted({s.airfoil.name for s in definition.stations if not s.airfoil.polars})
-    if bare:
-        raise ExportError(
-            f"{path}: AeroDyn needs polars, {', '.join(bare[:4])} have none; --polars estimate "
-            "makes some"
-        )
+    require_polars(definition, path, "AeroDyn")
     blade = path.with_name(f"{path.stem}{PUT_BACK}.dat")
-    findings = openfast.write(definition, blade)
-    part = blade.with_name(f"{blade.stem}{PART_SUFFIX}")
-    new = read_lines(part)
-    part.unlink()  # its lines go into the main input
+    new, findings = openfast.parts(definition, blade)
     write_lines(path, _replaced(lines, new, blade.name), end)
     said = [finding for finding in findings if finding.where != "AFNames"]
     if path.parent.resolve() != main.parent.resolve():

@@ -16,31 +16,44 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.blade import Blade
+from bladegen.blending import without_polars
 from bladegen.conventions import line_of_axis, slope_degrees
 from bladegen.definition import BladeDefinition
 from bladegen.errors import Finding
+from bladegen.estimates import force_centre
 from bladegen.files import folder, safe_stem
 from bladegen.readers.airfoil_folder import companion
 from bladegen.readers.openfast import TWIST_SUFFIX
 from bladegen.readers.openfast_model import PART_SUFFIX
 from bladegen.resampling import common_grid, shape_grid
 from bladegen.writers.airfoil_info import Tables, info, part, tables_at
-from bladegen.writers.text import aligned, write_lines
+from bladegen.writers.text import aligned, few, write_lines
 
-__all__ = ["write"]
+__all__ = ["parts", "write"]
 
 LANDMARKS = 401
 SAME_SHAPE = 1e-12  # chords; nodes nearer than this share an airfoil
 TOLERANCE = 5e-4  # m; of a grid of about a hundred nodes, which AeroDyn still runs at ease
-THICK, ROUND = 0.4, 1.0  # of chord: from airfoil to cylinder, as public polar sets have it
-QUARTER, HALF = 0.25, 0.5
-SHOWN = 4  # airfoils that a finding names
 
 
 def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
     """Write a blade for OpenFAST: the blade file at `path`, the others beside it.
 
     Returns what the files cannot hold.
+    """
+    lines, findings = parts(definition, path)
+    listing = path.with_name(f"{path.stem}{PART_SUFFIX}")
+    if lines:
+        write_lines(listing, lines)
+    else:
+        listing.unlink(missing_ok=True)  # of a blade that had polars
+    return findings
+
+
+def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Finding, ...]]:
+    """Write a blade's files but for the lines of AeroDyn's main input that name them.
+
+    Returns these lines, none without polars, and what the files cannot hold.
     """
     eta, loss = common_grid(definition, TOLERANCE, over_z=True)
     blade = Blade.from_definition(definition, landmarks=LANDMARKS)
@@ -49,7 +62,7 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
     thickness = blade.splines.fit(profiles).relative_thickness
     tables = tables_at(definition, eta.tolist())
     whole = all(one.polars for one in tables)
-    reference = np.interp(thickness, [THICK, ROUND], [QUARTER, HALF])
+    reference = force_centre(thickness)
     changes = np.abs(np.diff(profiles, axis=0)).max(axis=(1, 2)) > SAME_SHAPE
     if whole:
         known = [np.nan if one.reference is None else one.reference for one in tables]
@@ -74,17 +87,16 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
         number = int(stale.name[len(stem) + 3 :][:3])
         if number > ids[-1] or (stale in files and not whole):  # of a blade that had more
             stale.unlink()
-    listing = path.with_name(f"{path.stem}{PART_SUFFIX}")
+    lines = []
     if whole:
         most = max(len(one.polars) for one in tables)
         listed = [f"{airfoils.name}/{file.name}" for file in files]
-        write_lines(listing, part(path.name, listed, most, definition.rotor.blades))
-    else:
-        listing.unlink(missing_ok=True)
+        lines = part(path.name, listed, most, definition.rotor.blades)
     write_lines(path.with_name(f"{path.stem}{TWIST_SUFFIX}"), _twist(definition, eta))
     write_lines(path, _blade(definition, eta, ids, reference))
     found = _findings(definition, len(eta), int(ids[-1]), loss, airfoils.name)
-    return (*found, *_polar_findings(definition, tables, listing.name))
+    listing = f"{path.stem}{PART_SUFFIX}"
+    return lines, (*found, *_polar_findings(definition, tables, listing))
 
 
 def _blade(definition: BladeDefinition, eta: Array, ids: Array, reference: Array) -> list[str]:
@@ -174,10 +186,11 @@ def _polar_findings(
     definition: BladeDefinition, tables: Sequence[Tables], listing: str
 ) -> list[Finding]:
     """Say where the polars are, or why there are none."""
-    bare = sorted({s.airfoil.name for s in definition.stations if not s.airfoil.polars})
     if not all(one.polars for one in tables):
         why = (
-            "there are none" if not any(one.polars for one in tables) else _few(bare) + " have none"
+            "there are none"
+            if not any(one.polars for one in tables)
+            else few(without_polars(definition)) + " have none"
         )
         said = f"polars are not written: {why}; AFNames must list yours in the order of BlAFID"
         return [Finding("AFNames", said)]
@@ -193,9 +206,5 @@ def _polar_findings(
         if len({polar.configuration for polar in station.airfoil.polars}) > 1
     }
     if more:
-        found.append(Finding("polars", f"of the first configuration alone: {_few(sorted(more))}"))
+        found.append(Finding("polars", f"of the first configuration alone: {few(sorted(more))}"))
     return found
-
-
-def _few(names: Sequence[str]) -> str:
-    return ", ".join(names[:SHOWN]) + (" and more" if len(names) > SHOWN else "")

@@ -5,9 +5,10 @@ from pathlib import Path
 
 from bladegen.files import replacing
 
-__all__ = ["aligned", "exact", "line_end", "one_line", "write_lines"]
+__all__ = ["aligned", "exact", "few", "line_end", "one_line", "write_lines"]
 
 LONGEST = 1 << 20  # bytes of a line that are looked at
+SHOWN = 4  # names that a message holds
 WIDTH = 23  # of "-1.2345678901234567e-123"
 
 
@@ -27,6 +28,11 @@ def aligned(values: Iterable[float | str]) -> str:
 def one_line(text: str) -> str:
     """Return a text on one line of printable letters."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
+def few(names: Sequence[str]) -> str:
+    """Return the first names of a list, and whether there are more."""
+    return ", ".join(names[:SHOWN]) + (" and more" if len(names) > SHOWN else "")
 
 
 def line_end(path: Path) -> str:

@@ -5,6 +5,13 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = sorted((Path(__file__).parent.parent / "examples").glob("*.py"))
+GALLERY = EXAMPLES[0].parent.parent / "docs" / "gallery.md"
+
+
+def test_the_gallery_takes_in_every_example():
+    lines = GALLERY.read_text(encoding="utf-8").splitlines()
+    wanted = {f'--8<-- "examples/{path.name}"' for path in EXAMPLES}
+    assert wanted == {line for line in lines if line.startswith("--8")}
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

@@ -1,9 +1,9 @@
 .DEFAULT_GOAL := help
 LOCK = --quiet --universal --python-version 3.11 --no-header --no-emit-index-url --no-annotate
-.PHONY: help demo lint test docs bench mutants lock licences sbom audit release clean
+.PHONY: help demo lint test test-all docs bench mutants lock licences sbom audit release clean
 
 help: ## show this
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
 
 demo: ## set up and build the IEA 15 MW blade into out/
 	@./scripts/setup.sh
@@ -15,8 +15,11 @@ lint: ## set up, lint and check types
 	.venv/bin/ruff format --check
 	.venv/bin/mypy
 
-test: lint ## the same, then run all tests
-	.venv/bin/python -m pytest -n 2 --cov --cov-report=term --cov-fail-under=95
+test: lint ## the same, then test every law (JOBS=2 processes)
+	./scripts/test.sh -m "not nightly"
+
+test-all: lint ## the same with what explores: nightly, and before a release
+	HYPOTHESIS_PROFILE=thorough ./scripts/test.sh
 
 docs: ## set up and build the documentation into site/; warnings are errors
 	@./scripts/setup.sh test
@@ -48,7 +51,7 @@ audit: ## look known vulnerabilities of all that is pinned up
 	@./scripts/setup.sh dev
 	.venv/bin/pip-audit -r locks/dev.txt --no-deps --disable-pip
 
-release: ## build sdist and wheel into dist/, and try the wheel in a fresh environment
+release: test-all ## run all tests, build sdist and wheel into dist/, and try the wheel in a fresh environment
 	@./scripts/setup.sh dev
 	./scripts/release.sh
 

@@ -66,9 +66,9 @@ def test_a_job_takes_shapes_from_a_folder(tmp_path):
         make(Job(str(path), state, ".sections.csv", str(target)))
 
 
-def test_a_job_that_cannot_be_done_is_one_error():
+def test_a_job_that_cannot_be_done_is_one_error(tmp_path):
     with pytest.raises(StudioError, match="neither a bundled blade nor a file"):
-        make(Job("gone.yaml", State("x"), ".stl", "."))
+        make(Job("gone.yaml", State("x"), ".stl", str(tmp_path)))
 
 
 def test_a_process_that_died_is_replaced(tmp_path):

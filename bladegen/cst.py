@@ -19,7 +19,11 @@ __all__ = ["COEFFICIENTS", "fit", "perturbations", "shapes", "standardised_shape
 DEGREE = 8
 COEFFICIENTS = 2 * (DEGREE + 1)
 FIT_POINTS = 200  # a side, spaced like a cosine
-CELLS = 1200  # of the curve's parameter, over both sides; arc length is right to 1e-10
+# Of the curve's parameter, over both sides.  Landmarks are right to 1e-10 chord, to 1e-9 where the
+# leading edge lies behind x = 0 (a first coefficient above sqrt 2).
+CELLS = 1200
+STEPS = 3  # towards a place within a cell; each divides what is left by a hundred or more
+WITHIN = 1.0 - 1e-12  # of a cell: a place stays in it
 CHUNK = 500  # shapes handled at once: bounds memory to some tens of megabytes
 
 
@@ -74,24 +78,25 @@ def shapes(coefficients: Array, u: Array) -> Array:
     u : (n,) array
         Landmark parameters, as `landmarks.landmark_parameters` makes them: the leading edge is
         the point farthest from the trailing edge, each side is divided by arc length.
+
+    Returns
+    -------
+    (m, n, 2) array
+        Right to 1e-10 chord, to 1e-9 where the leading edge lies behind x = 0.
     """
-    phi, x, value, slope = _grid()
-    points, tangents = _curve(coefficients, phi, x, value, slope)
-    step = phi[1] - phi[0]
+    points, tangents = _curve(coefficients, *_grid())
     speed = np.linalg.norm(tangents, axis=-1)
     nose = _farthest(points, tangents)
-    arc = _running_length(points, tangents, speed, step)
-    at_nose = _hermite_at(nose, arc, speed * step)
+    arc = _running_length(points, tangents, speed)
+    at_nose = _hermite_at(nose, arc, speed)
     total = arc[:, -1]
     target = np.where(
         u <= 0.5,
         2.0 * u * at_nose[:, None],
         at_nose[:, None] + (2.0 * u - 1.0) * (total - at_nose)[:, None],
     )
-    place = _inverse(target, arc, speed * step)
-    return np.stack(
-        [_hermite_at(place, points[..., i], tangents[..., i] * step) for i in (0, 1)], axis=-1
-    )
+    place = _inverse(target, arc, speed)
+    return np.stack([_hermite_at(place, points[..., i], tangents[..., i]) for i in (0, 1)], axis=-1)
 
 
 def standardised_shapes(coefficients: Array, n: int = 401) -> Array:
@@ -124,13 +129,15 @@ def _class(x: Array) -> Array:
 def _grid() -> tuple[Array, Array, Array, Array]:
     """A parameter from -pi (suction TE) over 0 (nose) to pi, x, and y's basis and slopes.
 
-    x = (1 - cos phi) / 2 makes y analytic at the nose: sqrt(x) = sin(|phi| / 2).
+    x = (1 - cos phi) / 2 makes y analytic on either side: sqrt(x) = sin(|phi| / 2).  Slopes at
+    the nose are those of phi > 0.
     """
-    phi = np.linspace(-np.pi, np.pi, CELLS + 1)
+    phi = np.pi * np.arange(-(CELLS // 2), CELLS // 2 + 1) / (CELLS // 2)  # 0 is exact
     x = 0.5 * (1.0 - np.cos(phi))
     half = 0.5 * np.abs(phi)
     shape = np.sin(half) * np.cos(half) ** 2
-    rate = 0.5 * np.cos(half) * (np.cos(half) ** 2 - 2.0 * np.sin(half) ** 2) * np.sign(phi)
+    side = np.where(phi < 0, -1.0, 1.0)
+    rate = 0.5 * side * np.cos(half) * (np.cos(half) ** 2 - 2.0 * np.sin(half) ** 2)
     value = shape[:, None] * _bernstein(x)
     lower, upper = np.zeros((2, len(x), DEGREE + 1))
     k = np.arange(DEGREE)
@@ -145,48 +152,64 @@ def _grid() -> tuple[Array, Array, Array, Array]:
 def _curve(
     coefficients: Array, phi: Array, x: Array, value: Array, slope: Array
 ) -> tuple[Array, Array]:
-    """Points and derivatives in phi of the airfoils on the grid, (m, c, 2) each."""
+    """Points (m, c, 2) of the airfoils on the grid, and slopes (m, c - 1, 2, 2) a cell.
+
+    Slopes are those at each cell's start and end: where the two sides' first coefficients
+    differ, the slope of y in phi jumps at the nose.
+    """
     middle = len(phi) // 2
-    sides = coefficients[:, : DEGREE + 1], coefficients[:, DEGREE + 1 :]
-    y, dy = (
-        np.concatenate([sides[0] @ f[:middle].T, sides[1] @ f[middle:].T], axis=1)
-        for f in (value, slope)
-    )
-    # At the nose itself y' jumps if the two sides' first coefficients differ; take the mean.
-    dy[:, middle] = 0.25 * (sides[1][:, 0] - sides[0][:, 0])
+    suction, pressure = coefficients[:, : DEGREE + 1], coefficients[:, DEGREE + 1 :]
+    y = np.concatenate([suction @ value[:middle].T, pressure @ value[middle:].T], axis=1)
     points = np.stack([np.broadcast_to(x, y.shape), y], axis=-1)
-    return points, np.stack([np.broadcast_to(0.5 * np.sin(phi), y.shape), dy], axis=-1)
+    # At the nose itself `slope` is that of the pressure side; the suction side's is its negative.
+    to_nose = np.concatenate([slope[:middle], -slope[middle : middle + 1]])
+    dy = np.concatenate([_ends(suction @ to_nose.T), _ends(pressure @ slope[middle:].T)], axis=1)
+    dx = np.broadcast_to(_ends(0.5 * np.sin(phi)), dy.shape)
+    return points, np.stack([dx, dy], axis=-1) * (phi[1] - phi[0])
+
+
+def _ends(values: Array) -> Array:
+    """Return values (..., c) on the grid as those at each cell's two ends, (..., c - 1, 2)."""
+    return np.stack([values[..., :-1], values[..., 1:]], axis=-1)
 
 
 def _farthest(points: Array, tangents: Array) -> Array:
     """Return where each curve is farthest from the trailing edge (1, 0), in cells."""
     away = points - [1.0, 0.0]
-    rate = np.sum(away * tangents, axis=-1)
-    cell = np.argmax(np.sum(away * away, axis=-1), axis=1)
     row = np.arange(len(points))
-    cell = np.where(rate[row, cell] < 0, cell - 1, cell)
-    before, after = rate[row, cell], rate[row, cell + 1]
+    cell = np.argmax(np.sum(away * away, axis=-1), axis=1)
+    cell = np.where(np.sum(away[row, cell] * tangents[row, cell, 0], axis=-1) < 0, cell - 1, cell)
+    before = np.sum(away[row, cell] * tangents[row, cell, 0], axis=-1)
+    after = np.sum(away[row, cell + 1] * tangents[row, cell, 1], axis=-1)
     place: Array = cell + before / (before - after)
+    for _ in range(STEPS):
+        there = [_hermite_at(place, points[..., i], tangents[..., i]) for i in (0, 1)]
+        slope = [_hermite_at(place, points[..., i], tangents[..., i], order=1) for i in (0, 1)]
+        rate = (there[0] - 1.0) * slope[0] + there[1] * slope[1]
+        place = np.clip(place + rate / (before - after), cell, cell + WITHIN)
     return place
 
 
-def _running_length(points: Array, tangents: Array, speed: Array, step: float) -> Array:
+def _running_length(points: Array, tangents: Array, speed: Array) -> Array:
     """Arc length along each curve at the grid, by Simpson's rule on Hermite cells."""
-    chord = np.diff(points, axis=1)
-    middle = 1.5 * chord / step - 0.25 * (tangents[:, 1:] + tangents[:, :-1])
-    lengths = step / 6.0 * (speed[:, 1:] + speed[:, :-1] + 4.0 * np.linalg.norm(middle, axis=-1))
+    middle = 1.5 * np.diff(points, axis=1) - 0.25 * tangents.sum(axis=2)
+    lengths = (speed.sum(axis=2) + 4.0 * np.linalg.norm(middle, axis=-1)) / 6.0
     return np.concatenate([np.zeros((len(points), 1)), np.cumsum(lengths, axis=1)], axis=1)
 
 
-def _hermite_at(place: Array, values: Array, slopes: Array) -> Array:
-    """Evaluate cubic Hermite functions (m, c) at places (m, ...) counted in cells."""
+def _hermite_at(place: Array, values: Array, slopes: Array, *, order: int = 0) -> Array:
+    """Evaluate cubic Hermite functions, or their derivatives, at places (m, ...) in cells.
+
+    `values` are (m, c) on the grid, `slopes` (m, c - 1, 2) at the two ends of each cell.
+    """
     cell = np.clip(place.astype(np.int64), 0, values.shape[1] - 2)
     row = np.arange(len(values)).reshape((-1,) + (1,) * (place.ndim - 1))
     f = place - cell
-    a, b = values[row, cell], values[row, cell + 1]
-    da, db = slopes[row, cell], slopes[row, cell + 1]
-    secant = b - a
-    return a + f * (da + f * (3.0 * secant - 2.0 * da - db + f * (da + db - 2.0 * secant)))
+    a, secant = values[row, cell], values[row, cell + 1] - values[row, cell]
+    da, db = slopes[row, cell, 0], slopes[row, cell, 1]
+    c, d = 3.0 * secant - 2.0 * da - db, da + db - 2.0 * secant
+    found: Array = da + f * (2.0 * c + f * 3.0 * d) if order else a + f * (da + f * (c + f * d))
+    return found
 
 
 def _inverse(target: Array, arc: Array, slopes: Array) -> Array:
@@ -198,7 +221,7 @@ def _inverse(target: Array, arc: Array, slopes: Array) -> Array:
     cell = np.clip(flat.reshape(target.shape) - 1 - row * count, 0, count - 2)
     start, end = arc[row, cell], arc[row, cell + 1]
     place: Array = cell + (target - start) / (end - start)
-    for _ in range(2):
+    for _ in range(STEPS):
         place = place - (_hermite_at(place, arc, slopes) - target) / (end - start)
-        place = np.clip(place, cell, cell + 1.0 - 1e-12)
+        place = np.clip(place, cell, cell + WITHIN)
     return place

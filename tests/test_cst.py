@@ -1,8 +1,12 @@
+from math import comb
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.polynomial import Polynomial
 from numpy.testing import assert_allclose
+from scipy.optimize import brentq
 
 from bladegen import cst
 from bladegen.affine import standardise
@@ -11,6 +15,69 @@ from strategies import SEEDS, airfoils, naca
 
 U = landmark_parameters(101)
 SYMMETRIC = np.concatenate([np.full(9, 0.17), np.full(9, -0.17)])
+DRAWN = cst.perturbations(SYMMETRIC[None], 2, np.random.default_rng(11), reach=0.5)
+
+
+class Exactly:
+    """A class-shape airfoil as polynomials in s = sqrt(x); p is -s on the suction side."""
+
+    def __init__(self, coefficients):
+        s, left = Polynomial([0, 1]), Polynomial([1, 0, -1])  # left = 1 - x
+        self.x = s**2
+        self.y = [
+            s
+            * left
+            * sum(a * comb(8, k) * s ** (2 * k) * left ** (8 - k) for k, a in enumerate(side))
+            for side in np.split(coefficients, 2)
+        ]
+        away = [left**2 + y**2 for y in self.y]
+        roots = [(i, d.deriv().roots()) for i, d in enumerate(away)]
+        bends = [(i, r.real) for i, all_ in roots for r in all_ if abs(r.imag) < 1e-9]
+        side, place = max(
+            ((i, s) for i, s in bends if 0 <= s < 0.5), key=lambda b: away[b[0]](b[1])
+        )
+        self.nose = place if side else -place
+        self.gauss = np.polynomial.legendre.leggauss(50)
+
+    def point(self, p):
+        return self.x(abs(p)), self.y[int(p > 0)](abs(p))
+
+    def length(self, start, end):
+        total = 0.0
+        for low, high, y in ((start, min(end, 0.0), self.y[0]), (max(start, 0.0), end, self.y[1])):
+            cuts = np.linspace(low, max(low, high), 5)
+            half = 0.5 * np.diff(cuts)[:, None]
+            s = np.abs(cuts[:-1, None] + half * (1 + self.gauss[0]))
+            total += np.sum(half * self.gauss[1] * np.hypot(2 * s, y.deriv()(s)))
+        return total
+
+    def landmark(self, u):
+        start, end, share = (-1, self.nose, 2 * u) if u <= 0.5 else (self.nose, 1, 2 * u - 1)
+        wanted = share * self.length(start, end)
+        if share in (0.0, 1.0):
+            return self.point(end if share else start)
+        return self.point(brentq(lambda p: self.length(start, p) - wanted, start, end, xtol=1e-15))
+
+
+BLUNT = np.repeat([1.7, -0.3], 9)  # farthest from the trailing edge behind x = 0
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "chords"),
+    [
+        pytest.param(SYMMETRIC, 1e-10, id="symmetric"),
+        pytest.param(SYMMETRIC * np.repeat([1.3, 0.6], 9), 1e-10, id="sides differ at the nose"),
+        pytest.param(DRAWN[0], 1e-10, id="drawn"),
+        pytest.param(DRAWN[1], 1e-10, id="drawn again"),
+        pytest.param(BLUNT, 1e-9, id="leading edge behind x = 0"),
+    ],
+)
+def test_landmarks_are_right_to_the_digits_that_are_promised(coefficients, chords):
+    """Where the first coefficients differ, the slope in the curve's parameter jumps at the nose."""
+    curve = Exactly(coefficients)
+    u = np.array([0.0, 0.1, 0.31, 0.49, 0.4985, 0.4996, 0.5, 0.5003, 0.501, 0.52, 0.75, 1.0])
+    wanted = [curve.landmark(one) for one in u]
+    assert_allclose(cst.shapes(coefficients[None], u)[0], wanted, rtol=0, atol=chords)
 
 
 def by_landmarks(coefficients, n=101):

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
+from bladegen import grassmann
 from bladegen.landmarks import landmark_parameters, landmarks
 from bladegen.sections import SectionSplines
 from bladegen.smoothness import edge_bulges, edge_widths
@@ -53,6 +54,23 @@ def test_stations_stay_as_the_path_has_them(path, definition):
     blade = bg.Blade.from_definition(definition, landmarks=101, path=path)
     as_blended = replace(blade, edge_width=None)
     assert_allclose(blade.profiles(blade.eta), as_blended.profiles(blade.eta), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("path", "radians", "chords"), [("geodesic", 2.6e-3, 1.1e-3), ("spline", 6.6e-3, 2.1e-3)]
+)
+def test_wedges_leave_the_path_by_no_more_than_the_docs_say(path, radians, chords):
+    """docs/theory.md and docs/smoothness.md; distances on Gr(n, 2), and of landmarks."""
+    eta = np.union1d(np.linspace(0.0, 1.0, 41), [0.13, 0.196, 0.199, 0.26])  # worst of 1,001
+    on_path, moved = [], []
+    for name in bg.bundled():
+        blade = bg.Blade.from_definition(bg.read(name), path=path)
+        shapes = blade.shapes(eta)[0]
+        on_path.append(grassmann.distance(blade.shape_path(blade.parameter(eta)), shapes).max())
+        to = blade.profiles(eta) - replace(blade, edge_width=None).profiles(eta)
+        moved.append(np.linalg.norm(to, axis=-1).max())
+    assert 0.9 * radians < max(on_path) < radians
+    assert 0.9 * chords < max(moved) < chords
 
 
 @PATHS

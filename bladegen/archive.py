@@ -4,6 +4,7 @@ Nothing in such a file is executed: plain arrays and text only.
 """
 
 import hashlib
+import io
 import struct
 import tokenize
 import zipfile
@@ -15,13 +16,13 @@ from typing import Any
 import numpy as np
 
 from bladegen.arrays import Array
-from bladegen.errors import SpaceError
-from bladegen.files import replacing
+from bladegen.errors import FileError, SpaceError
+from bladegen.files import content_of, replacing
 
 __all__ = ["checksum", "load_arrays", "save_arrays"]
 
 VERSION = 1
-MAX_BYTES = 200_000_000  # of the file, and of what it unpacks to
+MAX_BYTES = 200 * 2**20  # of the file, and of what it unpacks to
 LABELS = ("version", "about", "checksum")
 DAMAGED = (  # what zipfile, zlib and numpy raise at bytes that are no archive of arrays
     ValueError,
@@ -31,6 +32,7 @@ DAMAGED = (  # what zipfile, zlib and numpy raise at bytes that are no archive o
     RuntimeError,  # a member under a password
     MemoryError,  # a header that claims more than there is
     OverflowError,
+    OSError,  # a directory that points before its file
     struct.error,
     tokenize.TokenError,
     zipfile.BadZipFile,
@@ -55,14 +57,12 @@ def load_arrays(path: Path, names: Sequence[str]) -> tuple[dict[str, Array], str
         If the file cannot be read, is of another version, or is damaged.
     """
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise SpaceError(f"{path}: is larger than {MAX_BYTES} bytes")
-        with zipfile.ZipFile(path) as archive:
+        with zipfile.ZipFile(io.BytesIO(content_of(path, MAX_BYTES))) as archive:
             if sum(member.file_size for member in archive.infolist()) > MAX_BYTES:
-                raise SpaceError(f"{path}: unpacks to more than {MAX_BYTES} bytes")
+                raise SpaceError(f"{path}: unpacks to more than {MAX_BYTES >> 20} MB")
             held = {name: _member(archive, name) for name in (*LABELS, *names)}
-    except OSError as error:
-        raise SpaceError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except FileError as error:
+        raise SpaceError(str(error)) from None
     except DAMAGED as error:
         raise SpaceError(f"{path}: is no shape space: {error}") from None
     if held["version"].shape != () or held["version"] != VERSION:

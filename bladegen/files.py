@@ -1,4 +1,7 @@
-"""Files that are whole or not there: written under a temporary name, then renamed, and logged."""
+"""Files that are whole or not there: written under a temporary name, then renamed, and logged.
+
+What is read is a regular file of bounded size; a pipe or a device has no end.
+"""
 
 import errno
 import fcntl
@@ -6,14 +9,25 @@ import hashlib
 import logging
 import os
 import re
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
-from bladegen.errors import ExportError
+from bladegen.errors import ExportError, FileError
 
-__all__ = ["alone", "digest_of", "folder", "replacing", "require_end", "safe_stem"]
+__all__ = [
+    "alone",
+    "beginning_of",
+    "content_of",
+    "digest_of",
+    "folder",
+    "replacing",
+    "require_end",
+    "safe_stem",
+]
 
 END_SLACK = 8  # bytes of line ends behind the last word
 
@@ -91,6 +105,54 @@ def _is_at(handle: int, path: Path) -> bool:
         return os.path.samestat(os.fstat(handle), path.stat())
     except FileNotFoundError:
         return False
+
+
+@contextmanager
+def _regular(path: Path) -> Iterator[BinaryIO]:
+    """Open a regular file for reading; anything else would have no end, or hold up its reader.
+
+    Raises
+    ------
+    FileError
+        If it is a folder, a pipe or a device, or cannot be read.
+    """
+    try:
+        # a pipe without a writer would hold up whoever opens it plainly
+        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        try:
+            if not stat.S_ISREG(os.fstat(handle).st_mode):
+                raise FileError(str(path), ["is no regular file"])
+            with os.fdopen(handle, "rb", closefd=False) as stream:
+                yield stream
+        finally:
+            os.close(handle)
+    except OSError as error:
+        raise FileError(str(path), [f"cannot be read: {error.strerror or error}"]) from None
+
+
+def content_of(path: Path, most: int) -> bytes:
+    """Return what a regular file holds, up to `most` bytes.
+
+    Raises
+    ------
+    FileError
+        If it is no regular file, holds more, or cannot be read.
+    """
+    with _regular(path) as stream:
+        content = stream.read(most + 1)
+    if len(content) > most:
+        size = f"{most >> 20} MB" if most >= 2**20 else f"{most} bytes"
+        raise FileError(str(path), [f"is larger than {size}, the most that is read"])
+    return content
+
+
+def beginning_of(path: Path, count: int) -> bytes:
+    """Return the first `count` bytes of a regular file; none if it is no such file."""
+    try:
+        with _regular(path) as stream:
+            return stream.read(count)
+    except FileError:
+        return b""
 
 
 def digest_of(path: Path) -> str:

@@ -9,12 +9,15 @@ import numpy as np
 from bladegen.deformation import Coordinates, Window
 from bladegen.designs import Design, tabulated
 from bladegen.errors import BladegenError, DesignError, FileError
+from bladegen.files import content_of
 from bladegen.pga import ShapeSpace
+from bladegen.readers.text_file import decimal_of, delimiter_of, text_of
 
 __all__ = ["chord_share", "coordinates", "factor_bounds", "factor_table", "metres", "span_window"]
 
 MANIFEST = ("index", "name", "valid", "reason", "attempts", "seed", "volume_m3", "surface_m2")
 FILES = ("_file", "_sha256", "_problem")
+MAX_TABLE = 512 * 2**20  # bytes; a million variants of forty columns
 _METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0}
 _LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(um|mm|cm|m)\s*")
 
@@ -87,8 +90,9 @@ def factor_bounds(texts: Sequence[str], field: str = "vary") -> dict[str, tuple[
 def factor_table(space: ShapeSpace | None, path: Path) -> Design:
     """Read a design from a CSV or Parquet file: a row a variant, a column a factor.
 
-    Twist is in degrees, in the column twist_deg.  Columns that a manifest has beside its
-    factors are passed over, so that a manifest is a table too.
+    Twist is in degrees, in the column twist_deg.  A CSV file has commas, or semicolons or tabs
+    and then decimal points or commas, as spreadsheets write them.  Columns
+    that a manifest has beside its factors are passed over, so that a manifest is a table too.
 
     Raises
     ------
@@ -99,8 +103,17 @@ def factor_table(space: ShapeSpace | None, path: Path) -> Design:
     from pyarrow import csv, parquet
 
     try:
-        parquet_file = path.suffix.lower() == ".parquet"
-        table = parquet.read_table(path) if parquet_file else csv.read_csv(path)
+        content = content_of(path, MAX_TABLE)
+        if path.suffix.lower() == ".parquet":
+            table = parquet.read_table(pa.BufferReader(content))
+        else:
+            text = text_of(content)
+            mark = delimiter_of(text)
+            table = csv.read_csv(
+                pa.BufferReader(text.encode()),
+                parse_options=csv.ParseOptions(delimiter=mark),
+                convert_options=csv.ConvertOptions(decimal_point=decimal_of(text, mark)),
+            )
         columns = {
             name: np.asarray(values.to_numpy(), dtype=np.float64)
             for name, values in zip(table.column_names, table.columns, strict=True)
@@ -110,7 +123,7 @@ def factor_table(space: ShapeSpace | None, path: Path) -> Design:
             columns["twist"] = np.radians(columns.pop("twist_deg"))
         return tabulated(space, columns)
     except OSError as error:
-        raise FileError(str(path), [f"cannot be read: {error.strerror or error}"]) from None
+        raise FileError(str(path), [f"not a table: {error}"]) from None
     except (pa.ArrowException, ValueError, TypeError) as error:
         first = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise FileError(str(path), [f"not a table of numbers: {first}"]) from None

@@ -8,8 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bladegen.errors import ExportError
-from bladegen.files import alone, folder, replacing, require_end, safe_stem
+from bladegen.errors import ExportError, FileError
+from bladegen.files import (
+    alone,
+    beginning_of,
+    content_of,
+    folder,
+    replacing,
+    require_end,
+    safe_stem,
+)
 
 
 def test_a_whole_file_replaces_the_old_one(tmp_path):
@@ -138,3 +146,30 @@ def test_a_file_that_ends_early_is_a_full_disk(tmp_path):
         with pytest.raises(ExportError, match="ends early"):
             write(content)
     assert target.read_bytes() == whole
+
+
+def test_only_regular_files_are_read_and_no_more_than_is_asked_for(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_bytes(b"0123456789")
+    assert content_of(path, 10) == b"0123456789"
+    assert beginning_of(path, 3) == b"012"
+    with pytest.raises(FileError, match="larger than 9 bytes, the most that is read"):
+        content_of(path, 9)
+
+
+@pytest.mark.parametrize("kind", ["pipe", "link to a pipe", "folder", "device", "nothing"])
+def test_what_has_no_end_is_not_read(tmp_path, kind):
+    """A pipe without a writer would hold up a plain `open`, /dev/zero would fill the memory."""
+    path = tmp_path / "a"
+    if "pipe" in kind:
+        os.mkfifo(path)
+    if "link" in kind:
+        (tmp_path / "b").symlink_to(path)
+        path = tmp_path / "b"
+    if kind == "folder":
+        path.mkdir()
+    if kind == "device":
+        path.symlink_to("/dev/zero")
+    with pytest.raises(FileError, match=r"is no regular file|cannot be read: No such file"):
+        content_of(path, 10)
+    assert beginning_of(path, 10) == b""

@@ -1,3 +1,5 @@
+import os
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -134,6 +136,12 @@ def test_files_that_are_too_large_are_refused(tmp_path, monkeypatch):
     (tmp_path / "big.npz").write_bytes(b"x" * 11)
     with pytest.raises(SpaceError, match="larger than 10 bytes"):
         ShapeSpace.load(tmp_path / "big.npz")
+
+
+def test_a_space_is_a_regular_file(tmp_path):
+    os.mkfifo(tmp_path / "space.npz")
+    with pytest.raises(SpaceError, match="is no regular file"):
+        ShapeSpace.load(tmp_path / "space.npz")
 
 
 @pytest.mark.parametrize("modes", [0, -1, 60, 1000])

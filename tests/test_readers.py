@@ -2,6 +2,7 @@
 
 import copy
 import math
+import os
 import re
 import subprocess
 import sys
@@ -783,9 +784,10 @@ def test_a_file_that_may_not_be_read_is_refused(path, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     path.write_text("a: 1", encoding="utf-8")
-    monkeypatch.setattr(Path, "open", refuse)
+    monkeypatch.setattr(os, "open", refuse)
     with pytest.raises(FileError, match="cannot be read: Permission denied"):
         readers.read(path)
+    monkeypatch.undo()
     with pytest.raises(yaml_file.YamlError, match="no regular file"):
         yaml_file.load_yaml(path.parent)
 

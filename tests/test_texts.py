@@ -1,3 +1,5 @@
+import os
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -7,7 +9,7 @@ from numpy.testing import assert_allclose
 from pyarrow import csv, parquet
 
 from bladegen import texts
-from bladegen.errors import BladegenError
+from bladegen.errors import BladegenError, FileError
 from bladegen.pga import ShapeSpace
 from bladegen.texts import coordinates, metres, span_window
 
@@ -99,3 +101,18 @@ def test_tables_that_are_none_say_why(tmp_path, text, said):
 def test_a_table_that_is_not_there_says_so(tmp_path):
     with pytest.raises(BladegenError, match="cannot be read"):
         texts.factor_table(None, tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_tables_of_spreadsheets_are_read(tmp_path, encoding):
+    path = tmp_path / "plan.csv"
+    path.write_text("t1;twist_deg;name\n\n0,1;1,5;a\n\n-0,2;2;b\n", encoding=encoding)
+    design = texts.factor_table(ShapeSpace.bundled(), path)
+    assert_allclose(design.values, [[0.1, np.radians(1.5)], [-0.2, np.radians(2)]])
+
+
+@pytest.mark.parametrize("name", ["plan.csv", "plan.parquet"])
+def test_a_table_is_a_regular_file(tmp_path, name):
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(FileError, match="is no regular file"):
+        texts.factor_table(None, tmp_path / name)

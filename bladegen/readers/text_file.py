@@ -4,6 +4,7 @@ A file that names another may only lead to files below its own folder (or one th
 allows): a blade from elsewhere cannot make its reader open what lies outside.
 """
 
+import codecs
 import re
 from collections.abc import Sequence
 from pathlib import Path, PureWindowsPath
@@ -11,28 +12,36 @@ from pathlib import Path, PureWindowsPath
 import numpy as np
 
 from bladegen.arrays import Array
-from bladegen.errors import FileError
+from bladegen.files import beginning_of, content_of
 from bladegen.readers.document import Notes, Range
 
-__all__ = ["head", "natural", "number", "numbers", "read_lines", "referred", "rising"]
+__all__ = [
+    "decimal_of",
+    "delimiter_of",
+    "head",
+    "natural",
+    "number",
+    "numbers",
+    "read_lines",
+    "referred",
+    "rising",
+    "text_of",
+]
 
 MAX_BYTES = 16 * 2**20  # the largest blade or airfoil file of these tools has 0.1 MB
 HEAD_BYTES = 8192
 SHOWN = 5  # wrong entries of one column that are named one by one
+_UTF_16 = codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE
 _DIGITS = re.compile(r"(\d+)")
 
 
 def head(path: Path) -> str:
     """Return the first 8 kB of a file as text; empty if it cannot be read."""
-    try:
-        with path.open("rb") as stream:
-            return stream.read(HEAD_BYTES).decode("utf-8", errors="replace")
-    except OSError:
-        return ""
+    return text_of(beginning_of(path, HEAD_BYTES))
 
 
-def read_lines(path: Path, errors: str = "replace") -> list[str]:
-    """Return a file's lines.
+def read_lines(path: Path, errors: str = "replace", *, most: int | None = None) -> list[str]:
+    """Return a file's lines: UTF-8, or UTF-16 with its mark, as spreadsheets write it.
 
     Parameters
     ----------
@@ -40,22 +49,33 @@ def read_lines(path: Path, errors: str = "replace") -> list[str]:
         The file.
     errors : str
         What becomes of bytes that are not UTF-8: "surrogateescape" keeps them for writing.
+    most : int, optional
+        The most bytes that are read; 16 MB if not given.
 
     Raises
     ------
     FileError
-        If it cannot be read, or is larger than 16 MB.
+        If it cannot be read, or is larger.
     """
-    try:
-        if not path.is_file():
-            raise FileError(str(path), ["is no regular file"])
-        with path.open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise FileError(str(path), [f"cannot be read: {error.strerror}"]) from None
-    if len(content) > MAX_BYTES:
-        raise FileError(str(path), [f"is larger than {MAX_BYTES >> 20} MB, the most that is read"])
-    return content.decode("utf-8-sig", errors=errors).splitlines()
+    return text_of(content_of(path, MAX_BYTES if most is None else most), errors).splitlines()
+
+
+def text_of(content: bytes, errors: str = "replace") -> str:
+    """Return bytes as text: UTF-8, or UTF-16 with its mark, as spreadsheets write it."""
+    if content.startswith(_UTF_16):
+        return content.decode("utf-16", errors="replace")
+    return content.decode("utf-8-sig", errors=errors)
+
+
+def delimiter_of(text: str) -> str:
+    """Return what divides the cells of a text's first row: a comma, a semicolon or a tab."""
+    first = next((line for line in text.splitlines() if line.strip()), "")
+    return max((",", ";", "\t"), key=first.count)
+
+
+def decimal_of(text: str, delimiter: str) -> str:
+    """Return the decimal mark of a table: a comma where cells have some and no points."""
+    return "," if delimiter != "," and "," in text and "." not in text else "."
 
 
 def referred(name: str, bases: Sequence[Path], below: Path | None = None) -> Path | None:

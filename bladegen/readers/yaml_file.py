@@ -13,7 +13,8 @@ from typing import Any, NoReturn
 
 import yaml
 
-from bladegen.errors import Finding
+from bladegen.errors import FileError, Finding
+from bladegen.files import content_of
 
 __all__ = ["YamlError", "load_yaml", "parse_yaml"]
 
@@ -46,15 +47,9 @@ class YamlError(Exception):
 def load_yaml(path: Path) -> tuple[Any, list[Finding]]:
     """Parse a YAML file of at most 64 MB; see `parse_yaml`."""
     try:
-        if not path.is_file():
-            raise YamlError("is no regular file")
-        with path.open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise YamlError(f"cannot be read: {error.strerror}") from None
-    if len(content) > MAX_BYTES:
-        raise YamlError(f"is larger than {MAX_BYTES >> 20} MB, the most that is read")
-    return parse_yaml(content)
+        return parse_yaml(content_of(path, MAX_BYTES))
+    except FileError as error:
+        raise YamlError(error.problems[0]) from None
 
 
 def parse_yaml(content: bytes | str) -> tuple[Any, list[Finding]]:

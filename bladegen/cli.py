@@ -158,15 +158,34 @@ def build(
     mirror: Annotated[
         bool, typer.Option("--mirror", help="A rotor that turns anticlockwise seen from upwind.")
     ] = False,
+    hub_radius: Annotated[
+        str | None,
+        typer.Option(metavar="LENGTH", help="Of the rotor, instead of the definition's; 2m."),
+    ] = None,
+    precone: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ANGLE",
+            help="Of the rotor in degrees, tips upwind, instead of the definition's.",
+        ),
+    ] = None,
 ) -> None:
     """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
     options = producing.options()
     made = making.blade(blade, landmarks)
     whole = None
+    if not rotor and (hub_radius or precone):
+        raise BladegenError("hub-radius, precone: are of the rotor; add --rotor, or leave them out")
     if rotor or mirror:
         from bladegen.rotor import rotor_of
+        from bladegen.texts import metres, radians
 
-        whole = rotor_of(made, mirrored=mirror)
+        whole = rotor_of(
+            made,
+            mirrored=mirror,
+            hub_radius=None if hub_radius is None else metres(hub_radius, "hub-radius"),
+            cone=None if precone is None else radians(precone, "precone"),
+        )
     _build(made, output, formats, options, whole)
 
 

@@ -7,7 +7,7 @@ goes first, so that the rotor turns clockwise as seen from upwind.  Precone lean
 way.  Metres and radians; the STEP assembly is in millimetres.  cadquery comes late.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,8 @@ __all__ = ["Rotor", "rotor_of", "write_glb", "write_step"]
 NOSE, BACK = 1.3, 0.9  # lengths of the spinner ahead of and behind the blades, in its radii
 COVER = 1.02  # the spinner's radius over what hides the root sections
 MOST_BLADES = 8
+LARGEST_HUB = 1.0  # radius over the blade's length
+LARGEST_CONE = np.radians(45.0)
 DEFLECTION = 0.005  # m, of the spinner's triangles
 
 
@@ -75,17 +77,53 @@ class Rotor:
         return rotations, self.hub_radius * rotations[..., 2]
 
 
-def rotor_of(blade: Blade, *, mirrored: bool = False) -> Rotor:
+def rotor_of(
+    blade: Blade,
+    *,
+    mirrored: bool = False,
+    hub_radius: float | None = None,
+    cone: float | None = None,
+) -> Rotor:
     """Return the rotor that a blade's definition describes.
+
+    Parameters
+    ----------
+    blade : Blade
+        The blade.
+    mirrored : bool
+        Turn anticlockwise as seen from upwind.
+    hub_radius : float, optional
+        Instead of the definition's [m].
+    cone : float, optional
+        Precone instead of the definition's, positive upwind [rad].
 
     Raises
     ------
     CadError
-        If the definition names no hub radius, or no usable number of blades.
+        If there is no hub radius, or no usable number of blades or cone.
     """
     facts = blade.definition.rotor
+    if hub_radius is not None or cone is not None:
+        facts = replace(
+            facts,
+            hub_radius=facts.hub_radius if hub_radius is None else hub_radius,
+            cone=facts.cone if cone is None else cone,
+        )
     if facts.hub_radius is None or not facts.hub_radius > 0:
-        raise CadError(f"{blade.name}: the definition names no hub radius, which a rotor needs")
+        raise CadError(
+            f"{blade.name}: the definition names no hub radius, which a rotor needs; give one "
+            "(--hub-radius LENGTH, such as 2m)"
+        )
+    if not facts.hub_radius <= LARGEST_HUB * blade.length:
+        raise CadError(
+            f"{blade.name}: hub radius {facts.hub_radius:g} m, allowed is up to the blade's length "
+            f"of {blade.length:g} m"
+        )
+    if not abs(facts.cone or 0.0) <= LARGEST_CONE:
+        raise CadError(
+            f"{blade.name}: precone {np.degrees(facts.cone or 0.0):g} deg, allowed is "
+            f"{-np.degrees(LARGEST_CONE):g} to {np.degrees(LARGEST_CONE):g} deg"
+        )
     if not 1 <= facts.blades <= MOST_BLADES:
         raise CadError(f"{blade.name}: {facts.blades} blades, allowed are 1 to {MOST_BLADES}")
     root = blade.sections(np.zeros(1))[0]

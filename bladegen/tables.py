@@ -47,6 +47,8 @@ def definition_figures(definition: BladeDefinition) -> dict[str, Any]:
         "hub_radius_m": rotor.hub_radius,
         "rotor_diameter_m": rotor.diameter,
         "blades": rotor.blades,
+        "cone_deg": None if rotor.cone is None else float(np.degrees(rotor.cone)),
+        "tilt_deg": None if rotor.tilt is None else float(np.degrees(rotor.tilt)),
         "stations": [
             {"eta": station.eta, "airfoil": station.airfoil.name} for station in definition.stations
         ],

@@ -1,5 +1,6 @@
 """Values as people write them: lengths (0.3mm, 2 mm, 0.002 m), coordinates (0.1,0,0,0@0.5)."""
 
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,12 +14,21 @@ from bladegen.files import content_of
 from bladegen.pga import ShapeSpace
 from bladegen.readers.text_file import decimal_of, delimiter_of, text_of
 
-__all__ = ["chord_share", "coordinates", "factor_bounds", "factor_table", "metres", "span_window"]
+__all__ = [
+    "chord_share",
+    "coordinates",
+    "factor_bounds",
+    "factor_table",
+    "metres",
+    "radians",
+    "span_window",
+]
 
 MANIFEST = ("index", "name", "valid", "reason", "attempts", "seed", "volume_m3", "surface_m2")
 FILES = ("_file", "_sha256", "_problem")
 MAX_TABLE = 512 * 2**20  # bytes; a million variants of forty columns
 _METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0}
+_ANGLE = re.compile(r"\s*([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(deg|°|rad)?\s*")
 _LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(um|mm|cm|m)\s*")
 
 
@@ -40,6 +50,26 @@ def metres(text: str, field: str) -> float:
             "such as 0.3mm"
         )
     return float(f"{float(match[1]) * _METRES[match[2]]:.15g}")
+
+
+def radians(text: str, field: str) -> float:
+    """Return an angle in radians; a number without a unit is in degrees.
+
+    Raises
+    ------
+    BladegenError
+        If it is no angle.
+
+    >>> round(radians("4deg", "precone"), 6)
+    0.069813
+    """
+    match = _ANGLE.fullmatch(text)
+    if match is None:
+        raise BladegenError(
+            f"{field}: got {text!r}, must be an angle in degrees (4, 4deg) or radians (0.07rad)"
+        )
+    value = float(match[1])
+    return value if match[2] == "rad" else math.radians(value)
 
 
 def chord_share(text: str, field: str) -> float | None:

@@ -1,4 +1,5 @@
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -264,3 +265,17 @@ def test_light_solids_are_small_and_say_their_schema(tmp_path):
     assert report["solid"]["deviation_mm"]["maximum"] < 1.0
     assert report["figures"]["crease_deg"] > 0
     assert len(report["spanwise"]["area_m2"]) >= 60
+
+
+def test_hub_radius_and_precone_reach_the_rotor(monkeypatch, tmp_path):
+    seen = []
+    monkeypatch.setattr(cli, "_build", lambda *arguments: seen.append(arguments[-1]))
+    words = ("build", "nrel5mw", "-o", tmp_path, "--landmarks", 101)
+    done = run(*words, "--rotor", "--hub-radius", "2.5m", "--precone", "4")
+    assert done.exit_code == 0
+    assert seen[0].hub_radius == 2.5
+    assert seen[0].cone == pytest.approx(math.radians(4.0))
+    done = run(*words, "--hub-radius", "2.5m")
+    assert isinstance(done.exception, BladegenError)
+    assert "add --rotor" in str(done.exception)
+    assert len(seen) == 1

@@ -202,6 +202,29 @@ def test_units_names_and_facts(path):
     assert definition.length == 20.0
 
 
+@pytest.mark.parametrize("within", ["hub", "hub.outer_shape_bem"])
+@pytest.mark.parametrize("tilt", ["drivetrain.uptilt", "outer_shape_bem.uptilt_angle"])
+def test_windio_1_keeps_hub_and_tilt_in_two_places(path, within, tilt):
+    document = changed(
+        windio1(),
+        ("components.hub", DELETE),
+        ("components.nacelle", DELETE),
+    )
+    for place, value in (
+        (f"{within}.diameter", 5.0),
+        (f"{within}.cone_angle", 0.04),
+        (f"{within}.drag_coefficient", 0.5),
+        (f"nacelle.{tilt}", 0.1),
+    ):
+        holder = document["components"]
+        *keys, last = place.split(".")
+        for key in keys:
+            holder = holder.setdefault(key, {})
+        holder[last] = value
+    rotor = read(document, path).rotor
+    assert (rotor.hub_radius, rotor.cone, rotor.tilt, rotor.hub_drag) == (2.5, 0.04, 0.1, 0.5)
+
+
 def test_only_the_shape_is_needed(path):
     document = changed(
         windio2(),

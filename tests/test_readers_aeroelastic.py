@@ -4,13 +4,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from published_formats import GOLDEN, hawc2, openfast
 from refusals import findings, problems
 
 import bladegen as bg
 from bladegen.errors import FileError
 from bladegen.readers import text_file
-from bladegen.readers.hawc2 import _finder
+from bladegen.readers.hawc2_model import finder
 
 
 def edit(path: Path, old: str, new: str, count: int = 1) -> Path:
@@ -167,15 +168,88 @@ def test_a_model_may_continue_in_the_folder_beside_it(tmp_path):
         bg.read(path, airfoils=airfoils)
 
 
+@pytest.mark.parametrize("folder", ["htc/_master", "htc/dlc12/wsp08", "hawcstab2", "HTC"])
+def test_an_htc_file_may_lie_deeper_in_its_model(tmp_path, folder):
+    """Of the published models, those of IEA 3.4 and 22 MW have htc/_master, IEA 10 hawcstab2."""
+    path = hawc2(tmp_path, "iea15mw")
+    airfoils = GOLDEN / "iea15mw" / "airfoils"
+    wanted = bg.read(path, airfoils=airfoils)
+    deeper = tmp_path / folder / "master.htc"
+    deeper.parent.mkdir(parents=True, exist_ok=True)
+    path.rename(deeper)
+    made = bg.read(deeper, airfoils=airfoils)
+    assert made.length == wanted.length
+    assert made.chord(0.3) == wanted.chord(0.3)
+
+
+def test_a_lone_htc_file_leads_nowhere_above_its_folder(tmp_path):
+    path = hawc2(tmp_path, "iea15mw")
+    (tmp_path / "lone").mkdir()
+    for file in path.parent.glob("*.htc"):
+        file.rename(tmp_path / "lone" / file.name)
+    path.parent.rmdir()
+    (tmp_path / "data").rename(tmp_path / "private")
+    lone = edit(tmp_path / "lone" / "turbine.htc", "./data/", "./private/")
+    edit(lone, "./htc/", "./")
+    assert "ae_filename: got './private/ae.dat', must be a file of this model" in problems(lone)
+
+
+ORIENTATION = """
+begin new_htc_structure ;
+begin orientation ;
+  begin base ;
+  mbdy tower ;
+  inipos 0.0 0.0 0.0 ;
+  mbdy_eulerang 0.0 0.0 0.0 ;
+  end base ;
+  begin relative ;
+    mbdy1 tower last ;
+    mbdy2 shaft 1 ;
+    mbdy2_eulerang 90.0 0.0 0.0 ;
+    mbdy2_eulerang 5.0 0.0 0.0 ;
+  end relative ;
+  begin relative ;
+    body1 shaft last ;
+    body2 hub1 1 ;
+    body2_eulerang -90.0 0.0 0.0 ;
+    body2_eulerang 0.0 180.0 0.0 ;
+    body2_eulerang 2.5 0.0 0.0 ;
+  end relative ;
+  begin relative ;
+    mbdy1 hub1 last ;
+    mbdy2 blade1 1 ;
+    mbdy2_eulerang 0.0 0.0 0.0 ;
+  end relative ;
+end orientation ;
+end new_htc_structure ;
+begin aero ;"""
+
+
+def test_the_rotor_of_a_hawc2_model_is_read(tmp_path):
+    path = hawc2(tmp_path, "iea15mw")
+    airfoils = GOLDEN / "iea15mw" / "airfoils"
+    bare = bg.read(path, airfoils=airfoils).rotor
+    assert (bare.hub_radius, bare.cone, bare.tilt) == (None, None, None)
+    edit(path, "begin aero ;", ORIENTATION)
+    edit(path, "nblades 3", "nblades 2")
+    rotor = bg.read(path, airfoils=airfoils).rotor
+    assert rotor.blades == 2
+    assert rotor.hub_radius == 3.97
+    assert_allclose([rotor.cone, rotor.tilt], np.radians([2.5, 5.0]), rtol=0, atol=1e-14)
+    edit(path, "body2_eulerang 2.5 0.0 0.0", "body2_eulerang [cone] 0.0 0.0")
+    rotor = bg.read(path, airfoils=airfoils).rotor
+    assert (rotor.hub_radius, rotor.cone) == (3.97, None)
+
+
 def test_names_of_a_model_at_the_top_of_a_disk_lead_below_it_only(monkeypatch):
     reached = []
 
     def referred(name, bases, below=None):
         reached.append((bases, below))
 
-    monkeypatch.setattr("bladegen.readers.hawc2.referred", referred)
+    monkeypatch.setattr("bladegen.readers.hawc2_model.referred", referred)
     for path in ("/models/one/htc/a.htc", "/one/htc/a.htc", "/htc/a.htc"):
-        _finder(Path(path))("b.htc")
+        finder(Path(path))("b.htc")
     one = [Path("/one/htc"), Path("/one")]
     assert reached[0][1] == Path("/models")
     assert reached[1:] == [(one, Path("/one")), ([Path("/htc")], None)]

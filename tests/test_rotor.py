@@ -87,3 +87,19 @@ def test_without_a_hub_radius_there_is_no_rotor(blade):
     facts = replace(blade.definition.rotor, blades=0)
     with pytest.raises(CadError, match="0 blades"):
         rotor_of(replace(blade, definition=replace(blade.definition, rotor=facts)))
+
+
+def test_hub_radius_and_cone_can_be_given(blade):
+    facts = replace(blade.definition.rotor, hub_radius=None, cone=None)
+    bare = replace(blade, definition=replace(blade.definition, rotor=facts))
+    assert rotor_of(bare, hub_radius=2.0).cone == 0.0
+    rotor = rotor_of(blade, hub_radius=5.0, cone=0.05)
+    assert (rotor.hub_radius, rotor.cone) == (5.0, 0.05)
+    assert rotor_of(blade, cone=0.0).hub_radius == 3.97
+    tip = rotor.placements()[0][0] @ [0.0, 0.0, blade.length] + rotor.placements()[1][0]
+    assert_allclose(np.linalg.norm(tip), blade.length + 5.0)
+    assert_allclose(tip[0], -(blade.length + 5.0) * np.sin(0.05))
+    with pytest.raises(CadError, match="precone 90 deg, allowed is -45 to 45 deg"):
+        rotor_of(blade, cone=np.pi / 2)
+    with pytest.raises(CadError, match="hub radius 1000 m, allowed is up to the blade's length"):
+        rotor_of(blade, hub_radius=1000.0)

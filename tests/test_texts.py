@@ -1,3 +1,4 @@
+import math
 import os
 
 import numpy as np
@@ -11,7 +12,7 @@ from pyarrow import csv, parquet
 from bladegen import texts
 from bladegen.errors import BladegenError, FileError
 from bladegen.pga import ShapeSpace
-from bladegen.texts import coordinates, metres, span_window
+from bladegen.texts import coordinates, metres, radians, span_window
 
 
 @given(st.floats(1e-6, 1e3), st.sampled_from([("um", 1e-6), ("mm", 1e-3), ("cm", 1e-2), ("m", 1)]))
@@ -116,3 +117,11 @@ def test_a_table_is_a_regular_file(tmp_path, name):
     os.mkfifo(tmp_path / name)
     with pytest.raises(FileError, match="is no regular file"):
         texts.factor_table(None, tmp_path / name)
+
+
+@pytest.mark.parametrize(("text", "angle"), [("4", 4.0), ("-2.5deg", -2.5), (" 3 ° ", 3.0)])
+def test_angles_are_degrees_unless_they_say_otherwise(text, angle):
+    assert radians(text, "precone") == pytest.approx(math.radians(angle))
+    assert radians("0.07rad", "precone") == 0.07
+    with pytest.raises(BladegenError, match="precone: got '4m', must be an angle"):
+        radians("4m", "precone")

@@ -9,9 +9,7 @@ meets theirs.
 """
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +26,10 @@ from bladegen.definition import (
 from bladegen.errors import DefinitionError, Finding
 from bladegen.readers.airfoil_folder import beside, placed_airfoils, thick_airfoils
 from bladegen.readers.document import Notes, Range
+from bladegen.readers.hawc2_model import MAX_LINES, Command, Finder, commands, finder, value
 from bladegen.readers.hawc2_polars import Profile, profile_sets, with_profiles
-from bladegen.readers.text_file import head, number, numbers, read_lines, referred, rising
+from bladegen.readers.hawc2_rotor import rotor
+from bladegen.readers.text_file import head, number, numbers, read_lines, rising
 
 __all__ = ["AE_SUFFIX", "HALF", "MARK", "PC_SUFFIX", "SUFFIXES", "blade_name", "read", "recognises"]
 
@@ -48,19 +48,7 @@ LENGTHS_ALIKE = 0.01  # of the length; ae files that end farther from c2_def's a
 EDGE = 2e-3  # of the chord; an airfoil may be so much out of the blade's range and be its end
 WHOLE = range(1, 10_000)  # numbers of polar sets
 SEVERAL = "names several polar sets; shapes go by thickness alone"
-MAX_DEPTH = 4  # of continue_in_file
-MAX_LINES = 500_000
-Finder = Callable[[str], Path | None]
 _PITCH_AXIS = re.compile(r";\s*pitch axis\s+([-+0-9.eE]+)")
-
-
-@dataclass(frozen=True)
-class _Line:
-    """A command of an htc file: its words, its comment, and where it stands."""
-
-    words: tuple[str, ...]
-    comment: str
-    place: str
 
 
 @dataclass
@@ -69,7 +57,7 @@ class _Body:
 
     name: str
     place: str
-    sections: list[_Line]
+    sections: list[Command]
 
 
 def recognises(path: Path) -> bool:
@@ -80,8 +68,8 @@ def recognises(path: Path) -> bool:
 
 def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinition | None:
     """Read a blade; None if there are problems, which `notes` then holds."""
-    find = _finder(path)
-    lines = _commands(path, find, notes, 0)
+    find = finder(path)
+    lines = commands(path, find, notes)
     body = _blade_body(lines, notes)
     if body is None:
         return None
@@ -126,6 +114,7 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
             ),
             pitch_axis=Distribution(eta, line.offset / chords(eta)),
             relative_thickness=rthick,
+            rotor=rotor(lines, body.name),
             source=str(path),
             findings=tuple(notes.findings),
         )
@@ -136,55 +125,11 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
 
 def blade_name(path: Path, notes: Notes) -> str | None:
     """Return the name of the main_body that is the blade, lower case; None if there is none."""
-    body = _blade_body(_commands(path, _finder(path), notes, 0), notes)
+    body = _blade_body(commands(path, finder(path), notes), notes)
     return None if body is None else body.name
 
 
-def _finder(path: Path) -> Finder:
-    """Return what finds the files that an htc file names.
-
-    HAWC2 runs beside ``htc/``, so names start there or from the file's own folder.  They lead
-    below that folder; in a model with ``htc/`` also to the folders beside the model's, which
-    models share.
-    """
-    here = path.parent.resolve()
-    model, disk = here.parent, Path(here.anchor)
-    if here.name != "htc" or model == disk:
-        return partial(referred, bases=[here])
-    below = model if model.parent == disk else model.parent
-    return partial(referred, bases=[here, model], below=below)
-
-
-def _commands(path: Path, find: Finder, notes: Notes, depth: int) -> list[_Line]:
-    """Return the commands of an htc file and of those that it continues in."""
-    found: list[_Line] = []
-    for k, line in enumerate(read_lines(path)):
-        code, mark, comment = line.partition(";")
-        words = code.replace(",", " ").split()
-        if not words:
-            continue
-        place = f"line {k + 1}" if depth == 0 else f"{path.name}, line {k + 1}"
-        first = words[0].lower()
-        if first == "exit":
-            break
-        if first != "continue_in_file":
-            found.append(_Line(tuple(words), mark + comment, place))
-            continue
-        named = find(words[1]) if len(words) > 1 else None
-        if named is None or depth == MAX_DEPTH:
-            lost = "lies outside of the model's folders or is not there"
-            said = lost if named is None else "nests too deep"
-            notes.findings.append(
-                Finding(place, f"continue_in_file {' '.join(words[1:])[:60]} {said}; passed over")
-            )
-            continue
-        found += _commands(named, find, notes, depth + 1)
-        if len(found) > MAX_LINES:
-            break
-    return found
-
-
-def _blade_body(lines: list[_Line], notes: Notes) -> _Body | None:
+def _blade_body(lines: list[Command], notes: Notes) -> _Body | None:
     """Return the main_body that is the blade: the one that aero links to, else by its name."""
     bodies: list[_Body] = []
     linked, open_blocks = "", []
@@ -248,15 +193,9 @@ def _centreline(
     return x, y, z, twist, pitch_axis
 
 
-def _value(lines: list[_Line], command: str) -> str:
-    """Return what stands behind the first command of a name, "" if nothing does."""
-    found = next((line for line in lines if line.words[0].lower() == command), None)
-    return found.words[1] if found is not None and len(found.words) > 1 else ""
-
-
-def _ae(path: Path, lines: list[_Line], find: Finder, notes: Notes) -> tuple[Array, ...] | None:
+def _ae(path: Path, lines: list[Command], find: Finder, notes: Notes) -> tuple[Array, ...] | None:
     """Return radius and chord [m], thickness [%] and polar set of the blade's ae rows."""
-    name, wanted = _value(lines, "ae_filename"), number(_value(lines, "ae_sets") or "1")
+    name, wanted = value(lines, "ae_filename"), number(value(lines, "ae_sets") or "1")
     found = find(name)
     if found is None:
         own = path.with_name(f"{path.stem}{AE_SUFFIX}")
@@ -308,9 +247,9 @@ def _ae_set(
     return radius, chord, thickness, np.array(sets)
 
 
-def _profiles(lines: list[_Line], find: Finder, notes: Notes) -> list[list[Profile]]:
+def _profiles(lines: list[Command], find: Finder, notes: Notes) -> list[list[Profile]]:
     """Return the sets of the pc file that aero names; none if it is out of reach."""
-    name = _value(lines, "pc_filename")
+    name = value(lines, "pc_filename")
     if not name:
         return []
     found = find(name)

@@ -32,6 +32,7 @@ RELATIVE_THICKNESS = Range(0.0, 1.05, "of the chord", above=True)
 DIAMETER = Range(0.0, 1000.0, "m")
 BLADES = Range(1, 10)
 DRAG = Range(0.0, 2.0)
+HUBS: tuple[tuple[str, ...], ...] = ((), ("outer_shape_bem",), ("outer_shape",))  # members of hub
 
 
 @dataclass(frozen=True)
@@ -61,8 +62,8 @@ class Layout:
         The path of the reference axis in `components.blade`.
     schedule : callable
         From the node of the shape to the entries of the airfoil schedule.
-    tilt : tuple of str
-        The path to the tilt angle.
+    tilt : tuple of tuples of str
+        The paths at which the tilt angle may stand.
     angle : float
         The unit of angle [rad].
     turn : Range
@@ -75,7 +76,7 @@ class Layout:
     thickness: str
     axis: tuple[str, ...]
     schedule: Callable[[Node], list[Entry]]
-    tilt: tuple[str, ...]
+    tilt: tuple[tuple[str, ...], ...]
     angle: float
     turn: Range
 
@@ -207,24 +208,30 @@ def _by_thickness(
 def _rotor(root: Node, layout: Layout) -> Rotor:
     """Read what is said of the rotor; nothing of it needs to be there."""
 
-    def number(allowed: Range, *keys: str) -> float | None:
-        node = root
-        for key in keys:
-            if not node.has(key):
-                return None
-            node = node[key]
-        return node.number(allowed)
+    def number(allowed: Range, *paths: tuple[str, ...]) -> float | None:
+        for path in paths:
+            node = root
+            for key in path:
+                if not node.has(key):
+                    break
+                node = node[key]
+            else:
+                return node.number(allowed)
+        return None
 
-    hub = number(DIAMETER, "components", "hub", "diameter")
-    cone = number(layout.turn, "components", "hub", "cone_angle")
+    def hub(*names: str) -> list[tuple[str, ...]]:
+        return [("components", "hub", *within, name) for name in names for within in HUBS]
+
+    diameter = number(DIAMETER, *hub("diameter"))
+    cone = number(layout.turn, *hub("cone_angle"))
     tilt = number(layout.turn, *layout.tilt)
-    blades = number(BLADES, "assembly", "number_of_blades")
+    blades = number(BLADES, ("assembly", "number_of_blades"))
     return Rotor(
         blades=Rotor.blades if blades is None else int(blades),
-        hub_radius=None if hub is None else hub / 2.0,
+        hub_radius=None if diameter is None else diameter / 2.0,
         # windIO writes 0 for a diameter that is not stated
-        diameter=number(DIAMETER, "assembly", "rotor_diameter") or None,
+        diameter=number(DIAMETER, ("assembly", "rotor_diameter")) or None,
         cone=None if cone is None else layout.angle * cone,
         tilt=None if tilt is None else layout.angle * tilt,
-        hub_drag=number(DRAG, "components", "hub", "cd"),
+        hub_drag=number(DRAG, *hub("cd", "drag_coefficient")),
     )

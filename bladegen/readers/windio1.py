@@ -32,7 +32,11 @@ LAYOUT = windio.Layout(
     thickness="relative_thickness",
     axis=("outer_shape_bem", "reference_axis"),
     schedule=schedule,
-    tilt=("components", "nacelle", "drivetrain", "uptilt"),
+    tilt=tuple(
+        ("components", "nacelle", part, name)
+        for part in ("drivetrain", "outer_shape_bem")
+        for name in ("uptilt", "uptilt_angle")
+    ),
     angle=1.0,
     turn=Range(-math.pi / 2, math.pi / 2, "rad"),
 )

@@ -28,7 +28,7 @@ LAYOUT = windio.Layout(
     thickness="rthick",
     axis=("reference_axis",),
     schedule=schedule,
-    tilt=("components", "drivetrain", "outer_shape", "uptilt"),
+    tilt=(("components", "drivetrain", "outer_shape", "uptilt"),),
     angle=math.pi / 180.0,
     turn=Range(-90.0, 90.0, "deg"),
 )

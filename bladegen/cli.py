@@ -29,6 +29,7 @@ from bladegen.cli_perturb import NO_CHANGES, Changes
 from bladegen.cli_studio import studio
 from bladegen.cli_view import KEYS, plot, preview
 from bladegen.errors import BladegenError
+from bladegen.output import CLOSED_PIPE, OutputError, guarded
 from bladegen.terminal import (
     log_to_terminal,
     print_figures,
@@ -61,8 +62,11 @@ app.command()(studio)
 def main() -> None:
     """Run the command line; a `BladegenError` is one line on stderr and exit code 1."""
     try:
-        app()
+        with guarded():
+            app()
     except BladegenError as error:
+        if isinstance(error, OutputError) and error.closed_pipe:
+            sys.exit(CLOSED_PIPE)
         sys.stderr.write(f"bladegen: {' '.join(str(error).split())}\n")
         sys.exit(1)
     except ImportError as error:  # libraries are imported where they are needed

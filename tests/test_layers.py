@@ -89,6 +89,7 @@ FLOW = [
     "notebook",
     "contact",
     "studio",
+    "output",
     "terminal",
     "cli_options",
     "cli_perturb",

@@ -23,6 +23,7 @@ from bladegen.cli_options import (
     Landmarks,
     Making,
     Producing,
+    Target,
     grouped,
 )
 from bladegen.cli_perturb import NO_CHANGES, Changes
@@ -151,7 +152,7 @@ def info(blade: BladeName, airfoils: Airfoils = None, as_json: Json = False) -> 
 @grouped
 def build(
     blade: BladeName,
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
+    output: Target,
     formats: Formats = None,
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
@@ -197,7 +198,7 @@ def build(
 @grouped
 def perturb(
     blade: BladeName,
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")],
+    output: Target,
     changes: Changes = NO_CHANGES,
     formats: Formats = None,
     landmarks: Landmarks = LANDMARKS,

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli_options import MAKING, Airfoils, Json
+from bladegen.cli_options import MAKING, Airfoils, Json, ending_in
 from bladegen.errors import BladegenError
 from bladegen.terminal import print_figures, print_findings, print_table, progress_bar
 
@@ -23,7 +23,10 @@ def check(
         typer.Argument(metavar="[OTHER]", help="Another one: the distance between the two."),
     ] = None,
     screenshot: Annotated[
-        Path | None, typer.Option(help="With OTHER: a PNG of FILE coloured by distance.")
+        Path | None,
+        typer.Option(
+            help="With OTHER: a PNG of FILE coloured by distance.", callback=ending_in(".png")
+        ),
     ] = None,
     airfoils: Airfoils = None,
     as_json: Json = False,

@@ -15,6 +15,7 @@ from bladegen.cli_options import (
     Formats,
     Making,
     Producing,
+    Target,
     grouped,
 )
 from bladegen.errors import FamilyError
@@ -26,7 +27,7 @@ __all__ = ["family"]
 @grouped
 def family(
     blade: BladeName,
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the family.")],
+    output: Target,
     count: Annotated[int | None, typer.Option(help="How many variants; 100 if not given.")] = None,
     seed: Annotated[int, typer.Option(help="Of the draws; the same seed, the same family.")] = 0,
     design: Annotated[

@@ -28,6 +28,8 @@ __all__ = [
     "Polars",
     "Producing",
     "Reynolds",
+    "Target",
+    "ending_in",
     "grouped",
 ]
 
@@ -115,6 +117,38 @@ Polars = Annotated[
 ]
 Reynolds = Annotated[
     float | None, typer.Option(help="Of estimated polars; from the file or the chord if not given.")
+]
+
+
+def ending_in(*suffixes: str) -> Callable[[typer.CallbackParam, Path | None], Path | None]:
+    """Return a callback that refuses an output file whose suffix says another kind of file."""
+
+    def checked(param: typer.CallbackParam, value: Path | None) -> Path | None:
+        from bladegen.files import require_suffix
+
+        if value is not None:
+            require_suffix(value, suffixes, param.opts[-1])
+        return value
+
+    return checked
+
+
+def _folder(param: typer.CallbackParam, value: Path) -> Path:
+    """Refuse a file's name where a folder is meant."""
+    from bladegen.errors import ExportError
+    from bladegen.exporters import FORMATS
+
+    suffix = next((one for one in FORMATS if value.name.lower().endswith(one)), "")
+    if suffix and not value.is_dir():
+        raise ExportError(
+            f"{param.opts[-1]}: got {value}, must be a folder; such as -o {value.parent} "
+            f"--format {suffix.lstrip('.')}"
+        )
+    return value
+
+
+Target = Annotated[
+    Path, typer.Option("-o", "--output", help="Folder for the files.", callback=_folder)
 ]
 
 

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from bladegen.cli_options import ending_in
 from bladegen.terminal import print_space, print_table, progress_bar
 
 __all__ = ["app"]
@@ -16,7 +17,10 @@ Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 @app.command("build")
 def build_space(
-    output: Annotated[Path, typer.Option("-o", "--output", help="The npz file to write.")],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", help="The npz file to write.", callback=ending_in(".npz")),
+    ],
     seed: Annotated[int, typer.Option(help="Of the perturbations.")] = 2022,
     airfoils: Annotated[
         Path | None,
@@ -80,7 +84,15 @@ def info_of_space(space: SpaceFile = None, as_json: Json = False) -> None:
 
 @app.command("plot")
 def plot_space(
-    output: Annotated[Path, typer.Option("-o", "--output", help="The picture, PNG, SVG or PDF.")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            help="The picture, PNG, SVG or PDF.",
+            callback=ending_in(".png", ".svg", ".pdf"),
+        ),
+    ],
     space: SpaceFile = None,
 ) -> None:
     """Draw a shape space: its modes, its spectrum and its data."""

@@ -7,7 +7,15 @@ from typing import Annotated, Any
 import typer
 
 from bladegen.cli_check import blade_of
-from bladegen.cli_options import LANDMARKS, MAKING, BladeName, Landmarks, Making, grouped
+from bladegen.cli_options import (
+    LANDMARKS,
+    MAKING,
+    BladeName,
+    Landmarks,
+    Making,
+    ending_in,
+    grouped,
+)
 from bladegen.cli_perturb import NO_CHANGES, Changes
 from bladegen.errors import BladegenError
 from bladegen.keys import help_text
@@ -56,16 +64,31 @@ def preview(
         tuple[str, str] | None,
         typer.Option(metavar="A B", help="Instead: A, coloured by its distance from B."),
     ] = None,
-    screenshot: Annotated[Path | None, typer.Option(metavar="PNG", help="Write a picture.")] = None,
+    screenshot: Annotated[
+        Path | None,
+        typer.Option(metavar="PNG", help="Write a picture.", callback=ending_in(".png")),
+    ] = None,
     html: Annotated[
         Path | None,
-        typer.Option(metavar="HTML", help="Write a page that turns in any browser, offline."),
+        typer.Option(
+            metavar="HTML",
+            help="Write a page that turns in any browser, offline.",
+            callback=ending_in(".html", ".htm"),
+        ),
     ] = None,
     gif: Annotated[
-        Path | None, typer.Option(metavar="GIF", help="Write a sweep through shapes.")
+        Path | None,
+        typer.Option(
+            metavar="GIF", help="Write a sweep through shapes.", callback=ending_in(".gif")
+        ),
     ] = None,
     mp4: Annotated[
-        Path | None, typer.Option(metavar="MP4", help="The same as a film (extra `video`).")
+        Path | None,
+        typer.Option(
+            metavar="MP4",
+            help="The same as a film (extra `video`).",
+            callback=ending_in(".mp4"),
+        ),
     ] = None,
     sweep: Annotated[
         list[str] | None,
@@ -198,8 +221,11 @@ def plot(
         list[What] | None, typer.Option(help="Which diagrams; may be repeated; all if not given.")
     ] = None,
     kind: Annotated[
-        Kind, typer.Option("--format", help="Of the files in a folder; a file's suffix says its.")
-    ] = Kind.png,
+        Kind | None,
+        typer.Option(
+            "--format", help="Of the files in a folder, png if not given; a file's suffix says its."
+        ),
+    ] = None,
     changes: Changes = NO_CHANGES,
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
@@ -211,14 +237,14 @@ def plot(
     A perturbed blade is drawn over its baseline.
     """
     from bladegen.blade_plots import PLOTS
-    from bladegen.files import folder, replacing, safe_stem
-    from bladegen.plots import SUFFIXES, require_suffix, save_figure, save_pages
+    from bladegen.files import folder, replacing, require_suffix, safe_stem
+    from bladegen.plots import SUFFIXES, save_figure, save_pages
 
     wanted = list(dict.fromkeys(what or [What.all]))
     chosen = list(PLOTS) if What.all in wanted else [one.value for one in wanted]
     single = output.suffix.lower() in SUFFIXES or (bool(output.suffix) and not output.is_dir())
     if single:
-        require_suffix(output)
+        require_suffix(output, SUFFIXES if kind is None else (f".{kind}",), "--output")
     if single and len(chosen) > 1 and output.suffix.lower() != ".pdf":
         raise BladegenError(
             f"output: got {output} for {len(chosen)} diagrams, must be a folder or a .pdf; or "
@@ -235,7 +261,8 @@ def plot(
         else:
             stem = safe_stem(shown.name)
             files = [
-                output if single else folder(output) / f"{stem}-{name}.{kind}" for name in chosen
+                output if single else folder(output) / f"{stem}-{name}.{kind or Kind.png}"
+                for name in chosen
             ]
             for name, file in zip(chosen, files, strict=True):
                 progress(f"drawing {name}")

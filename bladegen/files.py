@@ -11,7 +11,7 @@ import os
 import re
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -26,6 +26,7 @@ __all__ = [
     "folder",
     "replacing",
     "require_end",
+    "require_suffix",
     "safe_stem",
 ]
 
@@ -173,6 +174,21 @@ def require_end(path: Path, mark: bytes) -> None:
         stream.seek(max(0, path.stat().st_size - len(mark) - END_SLACK))
         if mark not in stream.read():
             raise OSError(errno.ENOSPC, "the file ends early, is the disk full?")
+
+
+def require_suffix(path: Path, allowed: Sequence[str], field: str = "output") -> None:
+    """See that a file that is to be written says by its suffix what it will hold.
+
+    Raises
+    ------
+    ExportError
+        If its suffix is none of the allowed ones (lower case, with their dots).
+    """
+    if path.suffix.lower() not in allowed:
+        raise ExportError(
+            f"{field}: got {path}, suffix {path.suffix!r}, allowed are {', '.join(allowed)}; "
+            f"such as {path.with_suffix(allowed[0]).name}"
+        )
 
 
 def folder(path: Path) -> Path:

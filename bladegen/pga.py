@@ -16,6 +16,7 @@ from bladegen import grassmann
 from bladegen.archive import load_arrays, save_arrays
 from bladegen.arrays import Array, readonly
 from bladegen.errors import GeometryError, SpaceError
+from bladegen.files import require_suffix
 from bladegen.landmarks import landmark_parameters
 
 __all__ = ["ShapeSpace"]
@@ -138,6 +139,7 @@ class ShapeSpace:
 
     def save(self, path: str | Path) -> None:
         """Write the space to an npz file, with a version and a checksum."""
+        require_suffix(Path(path), (".npz",))
         save_arrays(Path(path), {name: getattr(self, name) for name in ARRAYS}, self.about)
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 from bladegen import affine
 from bladegen.arrays import Array
 from bladegen.blade import Blade
-from bladegen.errors import ExportError
+from bladegen.files import require_suffix
 from bladegen.pga import ShapeSpace
 from bladegen.style import CATEGORIES, FAINT, INK, SEQUENTIAL
 
@@ -20,7 +20,6 @@ __all__ = [
     "figure",
     "figure_of",
     "physical",
-    "require_suffix",
     "save_figure",
     "save_pages",
     "shade",
@@ -86,7 +85,7 @@ def save_figure(drawn: Any, path: Path) -> None:
     ExportError
         If the suffix is none of PNG, SVG and PDF.
     """
-    require_suffix(path)
+    require_suffix(path, SUFFIXES)
     drawn.savefig(path, dpi=150)
 
 
@@ -97,12 +96,6 @@ def save_pages(figures: Iterable[Any], path: Path) -> None:
     with PdfPages(path) as pages:
         for drawn in figures:
             pages.savefig(drawn)
-
-
-def require_suffix(path: Path) -> None:
-    """Raise `ExportError` if a figure cannot be written to a file of that name."""
-    if path.suffix.lower() not in SUFFIXES:
-        raise ExportError(f"{path}: suffix {path.suffix!r}, allowed are {', '.join(SUFFIXES)}")
 
 
 def draw_space(space: ShapeSpace, path: Path) -> None:

@@ -17,6 +17,7 @@ import numpy as np
 from bladegen import keys, style
 from bladegen.arrays import Array
 from bladegen.errors import RenderError
+from bladegen.files import require_suffix
 from bladegen.preview.cameras import ANGLE, VIEWS
 from bladegen.preview.drawing import HEADLIGHT, LIGHTS, shaded
 from bladegen.preview.scene import Field, Scene
@@ -25,6 +26,7 @@ __all__ = ["LANDMARKS", "LARGEST", "document", "write_page"]
 
 LANDMARKS = 201  # of a section that a page holds
 LARGEST = 10_000_000  # bytes, that can still be sent by mail
+SUFFIXES = (".html", ".htm")
 STEPS = 255  # of a palette
 
 
@@ -44,7 +46,10 @@ def write_page(scene: Scene, path: Path, *, colour: str = "plain") -> None:
     ------
     RenderError
         If there is no such colour, or the surface has too many triangles for a page.
+    ExportError
+        If the file's name ends neither in .html nor in .htm.
     """
+    require_suffix(path, SUFFIXES)
     text = document(scene, keys.On(colour=colour))
     if len(text) > LARGEST:
         raise RenderError(

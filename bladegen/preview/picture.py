@@ -8,6 +8,7 @@ import numpy as np
 
 from bladegen.arrays import Array, Indices
 from bladegen.blade import Blade
+from bladegen.files import require_suffix
 from bladegen.mesh import TriangleMesh, surface
 from bladegen.preview.cameras import VIEWS
 from bladegen.preview.drawing import (
@@ -69,7 +70,14 @@ def picture(
 
 
 def save_image(image: Indices, path: Path) -> None:
-    """Write an image (height, width, 3) as a PNG."""
+    """Write an image (height, width, 3) as a PNG.
+
+    Raises
+    ------
+    ExportError
+        If the file's name does not end in .png.
+    """
+    require_suffix(path, (".png",))
     from PIL import Image
 
     Image.fromarray(image).save(path, format="PNG", optimize=True)

@@ -18,6 +18,7 @@ from bladegen.blade import Blade
 from bladegen.deformation import RANGES
 from bladegen.designs import factors
 from bladegen.errors import ExportError, RenderError
+from bladegen.files import require_suffix
 from bladegen.mesh import TriangleMesh, surface
 from bladegen.pga import ShapeSpace
 from bladegen.preview.cameras import VIEWS, View
@@ -135,7 +136,14 @@ def frames(
 
 
 def write_gif(images: Sequence[Indices], path: Path, *, fps: int = FPS) -> None:
-    """Write images as a GIF that loops for ever, all in the colours of the first and the middle."""
+    """Write images as a GIF that loops for ever, all in the colours of the first and the middle.
+
+    Raises
+    ------
+    ExportError
+        If the file's name does not end in .gif.
+    """
+    require_suffix(path, (".gif",))
     from PIL import Image
 
     pictures = [Image.fromarray(image) for image in images]
@@ -167,8 +175,9 @@ def write_mp4(images: Sequence[Indices], path: Path, *, fps: int = FPS) -> None:
     Raises
     ------
     ExportError
-        If there is no encoder.
+        If there is no encoder, or the file's name does not end in .mp4.
     """
+    require_suffix(path, (".mp4",))
     require_encoder(path)
     import imageio_ffmpeg
 

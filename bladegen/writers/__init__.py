@@ -14,6 +14,7 @@ from bladegen.blade import Blade
 from bladegen.definition import BladeDefinition
 from bladegen.errors import ExportError, Finding
 from bladegen.estimates import available, with_polars
+from bladegen.files import require_suffix
 from bladegen.redefinition import redefined
 from bladegen.writers import airfoil_files, hawc2, openfast, spanwise_table, windio1, windio2
 from bladegen.writers.airfoil_files import write_airfoil
@@ -133,13 +134,17 @@ def format_of(path: Path, name: str | None = None) -> Format:
     ExportError
         If there is none.
     """
+    known = dict.fromkeys(suffix for row in FORMATS for suffix in row.suffixes if suffix)
     for row in FORMATS:
+        if row.name == name and row.suffixes == ("",) and path.suffix.lower() in known:
+            raise ExportError(f"{path}: {name} is a folder of files, such as {path.stem}")
+        if row.name == name and row.suffixes != ("",):
+            require_suffix(path, row.suffixes)
         if row.name == name or (name is None and path.suffix.lower() in row.suffixes):
             return row
     if name is not None:
         names = ", ".join(row.name for row in FORMATS)
         raise ExportError(f"format: got {name!r}, allowed are {names}")
-    known = dict.fromkeys(suffix for row in FORMATS for suffix in row.suffixes if suffix)
     suffixes = ", ".join(known)
     raise ExportError(
         f"{path}: suffix {path.suffix!r}, allowed are {suffixes}, or none for "

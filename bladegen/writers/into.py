@@ -16,7 +16,7 @@ import numpy as np
 
 from bladegen.definition import Airfoil, BladeDefinition
 from bladegen.errors import FileError, Finding
-from bladegen.files import replacing
+from bladegen.files import replacing, require_suffix
 from bladegen.readers import turbine_file
 from bladegen.readers.document import Node, Notes
 from bladegen.readers.polars import polars as read_polars
@@ -30,6 +30,7 @@ __all__ = ["write_into"]
 
 WRITERS = {"windIO 2": windio2, "windIO 1": windio1}
 OTHERS = {".dat": write_into_main, ".htc": write_into_htc}
+YAML = (".yaml", ".yml")
 ROTOR = ("assembly", "hub", "drivetrain", "nacelle")
 RIVALS = frozenset(  # members of the outer shape that say the same as others, or of the old blade
     {
@@ -73,7 +74,9 @@ def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[
     FileError
         If the turbine file cannot be read or holds no blade.
     """
-    other = OTHERS.get(turbine.suffix.lower())
+    own = turbine.suffix.lower()
+    require_suffix(path, YAML if own in YAML else (own,))
+    other = OTHERS.get(own)
     if other is not None:
         return other(definition, turbine, path)
     try:

@@ -31,6 +31,7 @@ from bladegen.cli_studio import studio
 from bladegen.cli_view import KEYS, plot, preview
 from bladegen.errors import BladegenError
 from bladegen.output import CLOSED_PIPE, OutputError, guarded
+from bladegen.stopping import Stopped, stopped_by_signals
 from bladegen.terminal import (
     log_to_terminal,
     print_figures,
@@ -61,15 +62,21 @@ app.command()(studio)
 
 
 def main() -> None:
-    """Run the command line; a `BladegenError` is one line on stderr and exit code 1."""
+    """Run the command line; a `BladegenError` is one line on stderr and exit code 1.
+
+    So is a signal that ends the command, with 128 and the signal's number as exit code.
+    """
     try:
-        with guarded():
+        with stopped_by_signals(), guarded():
             app()
     except BladegenError as error:
         if isinstance(error, OutputError) and error.closed_pipe:
             sys.exit(CLOSED_PIPE)
         sys.stderr.write(f"bladegen: {' '.join(str(error).split())}\n")
         sys.exit(1)
+    except Stopped as stop:
+        sys.stderr.write(f"bladegen: {stop}\n")
+        sys.exit(stop.status)
     except ImportError as error:  # libraries are imported where they are needed
         sys.stderr.write(f"bladegen: {_missing(error)}\n")
         sys.exit(1)

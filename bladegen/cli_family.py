@@ -19,6 +19,7 @@ from bladegen.cli_options import (
     grouped,
 )
 from bladegen.errors import FamilyError
+from bladegen.stopping import Stopped
 from bladegen.terminal import print_table, variants_bar
 
 __all__ = ["family"]
@@ -107,10 +108,8 @@ def family(
     try:
         with _cluster(dask) as client, variants_bar(len(planned)) as progress:
             made = run(order, jobs=jobs, client=client, resume=resume, progress=progress)
-    except KeyboardInterrupt:
-        raise FamilyError(
-            f"{output}: interrupted; the same command with --resume goes on"
-        ) from None
+    except Stopped as stop:
+        raise stop.saying(f"{output}: the same command with --resume goes on; ") from None
     _summary(order, made)
 
 

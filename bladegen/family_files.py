@@ -11,13 +11,12 @@ name that is changed when it is whole.  So a part says that its block is whole, 
 run leaves without its part is written again.
 """
 
-import fcntl
 import hashlib
 import json
 import os
 import shutil
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,7 +25,7 @@ import numpy as np
 
 from bladegen.errors import ExportError, FamilyError
 from bladegen.families import BLOCK, Block
-from bladegen.files import folder, replacing
+from bladegen.files import alone, folder, replacing
 from bladegen.identity import differences
 
 __all__ = ["FamilyFolder", "read_manifest", "sections_digest"]
@@ -98,26 +97,15 @@ class FamilyFolder:
                 temporary.write_text(json.dumps(wanted, indent=2) + "\n", encoding="utf-8")
         folder(self.parts)
 
-    @contextmanager
-    def alone(self) -> Iterator[None]:
+    def alone(self) -> AbstractContextManager[None]:
         """Hold the folder, so that no second run writes into it.
 
         Raises
         ------
-        FamilyError
-            If another run holds it.
+        ExportError
+            If another run holds it, or it cannot be written.
         """
-        folder(self.path)
-        try:
-            lock = (self.path / ".lock").open("w")
-        except OSError as error:
-            raise ExportError(f"{self.path}: cannot be written: {error.strerror}") from None
-        with lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                raise FamilyError(f"{self.path}: another run is writing into it") from None
-            yield
+        return alone(folder(self.path), "family")
 
     def open_blocks(self, count: int) -> list[int]:
         """Return the numbers of the blocks that are not whole yet."""

@@ -4,6 +4,7 @@ Blocks do not know of each other, so who makes them and in what order changes no
 """
 
 import logging
+import os
 import signal
 from collections.abc import Callable, Generator
 from contextlib import closing
@@ -127,9 +128,9 @@ def run(
     Raises
     ------
     FamilyError
-        If the folder holds another family, another run writes into it, or workers keep dying.
+        If the folder holds another family, or workers keep dying.
     ExportError
-        If a file cannot be written.
+        If a file cannot be written, or another run writes into the folder.
     """
     if jobs < 1:
         raise FamilyError(f"jobs: got {jobs}, must be at least 1")
@@ -291,7 +292,10 @@ def _export(order: Order, blade: Blade, path: Path) -> str:
 _ORDER: list[Order] = []  # of a worker process, set once when it starts
 
 
-def _start(order: Order) -> None:
+def _start(order: Order, parent: int) -> None:
+    from bladegen.orphans import end_with
+
+    end_with(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to deal with
     _ORDER[:] = [order]
 
@@ -309,7 +313,7 @@ def _in_processes(order: Order, left: list[int], jobs: int) -> Generator[Made]:
     restarts, others = 0, set(active_children())
     while left:
         pool = ProcessPoolExecutor(
-            jobs, mp_context=get_context("spawn"), initializer=_start, initargs=(order,)
+            jobs, mp_context=get_context("spawn"), initializer=_start, initargs=(order, os.getpid())
         )
         try:
             for task in as_completed([pool.submit(_make_here, number) for number in left]):
@@ -317,10 +321,6 @@ def _in_processes(order: Order, left: list[int], jobs: int) -> Generator[Made]:
                 left = [other for other in left if other != made[0]]
                 restarts = 0
                 yield made
-        except (KeyboardInterrupt, GeneratorExit):
-            for process in set(active_children()) - others:
-                process.terminate()
-            raise
         except BrokenProcessPool:
             restarts += 1
             logger.warning("%s: a worker process died, another one goes on", order.target)
@@ -329,6 +329,10 @@ def _in_processes(order: Order, left: list[int], jobs: int) -> Generator[Made]:
                     f"{order.target}: worker processes died {restarts} times in a row (out of "
                     "memory?); fewer --jobs and --resume go on"
                 ) from None
+        except BaseException:  # told to stop: nobody waits for what is at work
+            for process in set(active_children()) - others:
+                process.terminate()
+            raise
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 

@@ -16,6 +16,7 @@ FLOW = [
     "files",
     "style",
     "keys",
+    "stopping",
     "archive",
     "grassmann",
     "fairing",
@@ -49,6 +50,7 @@ FLOW = [
     "writers",
     "polygons",
     "compiled",
+    "orphans",
     "sizes",
     "kernels",
     "batch",
@@ -116,12 +118,12 @@ LATE = {
     "ruamel": {"writers"},
     "neuralfoil": {"estimates"},
     "distributed": {"family_run", "cli_family"},
-    "numba": {"compiled"},
+    "numba": {"compiled", "orphans"},
     "nicegui": {"studio"},
     "fastapi": {"studio"},
     "uvicorn": {"studio"},
 }
-COMPILED = {"compiled", "sizes", "kernels"}  # load Numba with themselves, so come late too
+COMPILED = {"compiled", "orphans", "sizes", "kernels"}  # load Numba with themselves: late too
 CORE = FLOW[: FLOW.index("net") + 1]
 MODULES = sorted(PACKAGE.rglob("*.py"))
 

@@ -64,7 +64,7 @@ def runs(tmp_path_factory) -> list[dict[str, bytes]]:
         {
             str(path.relative_to(folder)): path.read_bytes()
             for path in sorted(folder.rglob("*"))
-            if path.is_file() and path.name != ".lock"
+            if path.is_file()
         }
         for folder in folders
     ]

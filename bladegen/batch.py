@@ -18,6 +18,7 @@ import numpy as np
 from bladegen import affine, grassmann, polygons
 from bladegen.arrays import Array, ArrayLike, Indices, readonly
 from bladegen.blade import Blade
+from bladegen.chord_lines import KEPT, ChordLines, Motions
 from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange, Window, faded
 from bladegen.edges import AsGiven, MinimumThickness, TrailingEdge
@@ -79,12 +80,15 @@ class SectionBatch:
         Where along the span they act.
     eta : (k,) array
         Span fractions of the sections.
+    chord_line : str
+        What a change of shape does with the chord line, as for `Blade.perturbed`.
     """
 
     blade: Blade
     space: ShapeSpace | None
     window: Window
     eta: Array
+    chord_line: str = KEPT
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "eta", readonly(self.eta))
@@ -152,6 +156,31 @@ class SectionBatch:
         """The relative thickness of the baseline's shapes before they are brought to it, (k,)."""
         plain, _, M, b = self._shapes
         return self.blade.splines.fit(affine.restore(plain, M, b)).relative_thickness
+
+    @cached_property
+    def _lines(self) -> tuple[ChordLines, Motions]:
+        """The baseline's chord lines at its own relative thickness, and how they got there."""
+        return self.blade.chord_lines(self.eta, self._ruling)
+
+    def _standing(self, target: Array) -> Array:
+        """Return where sections of relative thickness (k, b) shall stand, (k, b, 4).
+
+        Nose and trailing-edge midpoint of the chord lines that they keep, or the motions that
+        the baseline's own sections took: cosine and sine, and the shift.
+        """
+        kept = self.chord_line == KEPT
+
+        def numbers(lines: ChordLines, motions: Motions) -> Array:
+            parts = [lines.nose, lines.edge] if kept else [motions.R[:, 0], motions.s]
+            return np.concatenate(parts, axis=-1)
+
+        result = np.repeat(numbers(*self._lines)[:, None], target.shape[1], axis=1)
+        # where two noses compete, the line depends on the thickness
+        two = ~self._lines[0].alone & np.any(target != self._ruling[:, None], axis=1)
+        for k in np.flatnonzero(two):
+            eta = np.full(target.shape[1], self.eta[k])
+            result[k] = numbers(*self.blade.chord_lines(eta, target[k]))
+        return result
 
     def coefficients(self, t: Array) -> Array:
         """Return the coefficients (k, b, F, 2) of shapes with coordinates t (b, r)."""
@@ -245,11 +274,14 @@ class SectionBatch:
         from bladegen import kernels
 
         own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
-        given = [self.blade.u, self.features, self._slopes, raw, target, own, known]
+        standing = self._standing(target) if sections.size else target[..., None]
+        given = [self.blade.u, self.features, self._slopes, raw, target, standing, own, known]
         given += [chord, to_space, sections, measures]
         # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise
         kernels.made(
-            *(np.require(values, requirements=["C", "W"]) for values in given), float(edge)
+            *(np.require(values, requirements=["C", "W"]) for values in given),
+            float(edge),
+            self.chord_line == KEPT,
         )
         return self._faults(raw, own, known)
 

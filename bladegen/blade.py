@@ -227,11 +227,13 @@ class Blade(Shaped):
         if u is not None:
             finer = opening(affine.restore(self._between(u) @ path[0], *path[1:]))
         if self.deformations:
-            plain, M, _ = affine.standardise(points)
-            change = (self._deformed(plain, flat) - plain) @ M
+            stages = self._stages(flat, points)
+            change = stages[-1] - points
             finer = finer + (change if u is None else self.splines.values(u) @ change)
-            points = points + change
-        result = affine.restore(finer, *self.splines.normalising(points, wanted))
+            A, c, *_ = self._restored(stages, wanted)
+        else:
+            A, c = self.splines.normalising(points, wanted)
+        result = affine.restore(finer, A, c)
         return result.reshape(*spans.shape, *result.shape[1:])
 
     def relative_thickness(self, eta: ArrayLike) -> Array:

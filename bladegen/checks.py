@@ -14,6 +14,7 @@ import numpy as np
 from bladegen import affine, cad, cad_files, inflections, mesh, properties, smoothness
 from bladegen.arrays import Array
 from bladegen.blade import Blade
+from bladegen.chord_lines import ChordLines
 from bladegen.crossing import crossing_sections
 from bladegen.errors import FileError, Finding
 from bladegen.sections import SectionSplines
@@ -186,7 +187,10 @@ def _wiggles(blade: Blade) -> list[Finding]:
 
 
 def _missed(blade: Blade) -> Array:
-    """Return how far a blade is from its stations' airfoils, up to a stretch [chord]."""
+    """Return how far a blade is from its stations' airfoils, up to a stretch [chord].
+
+    Perturbed airfoils are brought to the blade's chord lines first.
+    """
     splines = SectionSplines(blade.u)
     airfoils = affine.restore(blade.points, blade.M, blade.b)
     profiles = blade.profiles(blade.eta)
@@ -194,7 +198,11 @@ def _missed(blade: Blade) -> Array:
         wanted = None
     else:
         wanted = splines.fit(profiles).relative_thickness
-    A, c = splines.normalising(airfoils, wanted)
+    curves = splines.fit(airfoils)
+    A, c = curves.normalising(wanted)
+    if blade.deformations:  # its place in the plane is held against the twist
+        lines = ChordLines.of(splines.fit(profiles))
+        A, c = ChordLines.of(curves.mapped(A, c)).onto(lines).after(A, c)
     missed: Array = np.abs(affine.restore(airfoils, A, c) - profiles).max(axis=(1, 2))
     return missed
 

@@ -18,6 +18,7 @@ from bladegen.cli_options import (
     Target,
     grouped,
 )
+from bladegen.cli_perturb import ChordLine
 from bladegen.errors import FamilyError
 from bladegen.stopping import Stopped
 from bladegen.terminal import print_table, variants_bar
@@ -54,6 +55,10 @@ def family(
         str | None,
         typer.Option(metavar="FROM,TO", help="Where changes fade in; past round roots by default."),
     ] = None,
+    chord_line: Annotated[
+        ChordLine,
+        typer.Option(help="Keep chord line and nose of the baseline, or leave them to the paper."),
+    ] = ChordLine.kept,
     spans: Annotated[int, typer.Option(help="Sections a variant.")] = 100,
     invalid: Annotated[
         str, typer.Option(help="'redraw' variants that are not sound, or 'keep' and mark them.")
@@ -94,6 +99,7 @@ def family(
         bounds=factor_bounds(vary or []),
         reach=reach,
         window=None if window is None else span_window(window),
+        chord_line=chord_line,
         spans=spans,
         invalid=invalid,
         tries=tries,

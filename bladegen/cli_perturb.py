@@ -1,12 +1,20 @@
 """The options that perturb a blade, given once to every command that takes them."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-__all__ = ["NO_CHANGES", "Changes"]
+__all__ = ["NO_CHANGES", "Changes", "ChordLine"]
+
+
+class ChordLine(StrEnum):
+    """What a change of shape does with the chord line."""
+
+    kept = "kept"
+    paper = "paper"
 
 
 @dataclass(frozen=True)
@@ -40,6 +48,13 @@ class Changes:
             metavar="FROM,TO", help="Where the changes fade in; past round roots if not given."
         ),
     ] = None
+    chord_line: Annotated[
+        ChordLine,
+        typer.Option(
+            help="Keep chord line and nose where the baseline has them under --pga, or leave them "
+            "where the paper's formula takes them."
+        ),
+    ] = ChordLine.kept
     allow_extrapolation: Annotated[
         bool, typer.Option("--allow-extrapolation", help="Go beyond the space's data.")
     ] = False
@@ -70,6 +85,7 @@ class Changes:
             () if t is None else t,
             **(amounts | {"twist": radians(self.twist)}),
             window=None if self.window is None else span_window(self.window),
+            chord_line=self.chord_line,
             allow_extrapolation=self.allow_extrapolation,
             name=self.name or f"{blade.name}-perturbed",
         )

@@ -14,6 +14,7 @@ import numpy as np
 
 from bladegen import grassmann
 from bladegen.arrays import Array, ArrayLike, readonly
+from bladegen.chord_lines import KEPT, known_convention
 from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis, Station, united
 from bladegen.errors import PerturbationError
 from bladegen.pga import ShapeSpace
@@ -140,11 +141,15 @@ class Deformation:
         How far along each mode [rad].
     window : Window
         Where it acts.
+    chord_line : str
+        "kept": sections are turned and shifted in their plane until chord line and nose are
+        those they had; "paper": they stay where the formula leaves them.
     """
 
     space: ShapeSpace
     t: Coordinates
     window: Window
+    chord_line: str = KEPT
 
     def __call__(self, X: Array, eta: Array) -> Array:
         """Return deformed shapes (k, n, 2) of shapes X at span fractions (k,), bases joined."""
@@ -159,6 +164,7 @@ def deformation_of(
     u: Array,
     *,
     allow_extrapolation: bool = False,
+    chord_line: str = KEPT,
 ) -> Deformation:
     """Return a deformation for shapes with landmarks at `u`, or say why there is none.
 
@@ -177,7 +183,7 @@ def deformation_of(
     beyond = space.outside(t.values)
     if beyond and not allow_extrapolation:
         raise PerturbationError(f"{beyond}; extrapolation must be asked for")
-    return Deformation(space, t, window)
+    return Deformation(space, t, window, known_convention(chord_line))
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ import numpy as np
 from bladegen.arrays import Array, Indices, Mask
 from bladegen.batch import FAULTS, Batch, SectionBatch
 from bladegen.blade import Blade
+from bladegen.chord_lines import KEPT, known_convention
 from bladegen.deformation import RANGES, AffineChange, Window
 from bladegen.designs import Design, factors
 from bladegen.errors import FamilyError
@@ -86,6 +87,8 @@ class Family:
         Draws of one variant before it is kept and marked.
     thinnest : float
         Least relative thickness of a sound section.
+    chord_line : str
+        What a change of shape does with the chord line, as for `Blade.perturbed`.
     """
 
     blade: Blade
@@ -96,12 +99,14 @@ class Family:
     invalid: str = "redraw"
     tries: int = TRIES
     thinnest: float = THINNEST
+    chord_line: str = KEPT
 
     def __post_init__(self) -> None:
         if self.invalid not in POLICIES:
             raise FamilyError(f"invalid: got {self.invalid!r}, allowed are {', '.join(POLICIES)}")
         if self.tries < 1:
             raise FamilyError(f"tries: got {self.tries}, must be at least 1")
+        known_convention(self.chord_line)
         if self.space is not None:  # the same test and the same words as for one variant
             self.blade.untested(self.space, np.zeros(self.space.dimension), AffineChange())
 
@@ -119,7 +124,7 @@ class Family:
 
     @cached_property
     def _sections(self) -> SectionBatch:
-        return SectionBatch(self.blade, self.space, self.window, self.eta)
+        return SectionBatch(self.blade, self.space, self.window, self.eta, self.chord_line)
 
     def block(self, index: Indices, *, dtype: type = np.float64, measured: bool = False) -> Block:
         """Make the sections of some variants, drawn again where they are not sound.
@@ -167,6 +172,7 @@ class Family:
             t[0],
             replace(change, **single),
             window=self.window,
+            chord_line=self.chord_line,
             allow_extrapolation=True,
             name=self.name(place),
         )
@@ -230,6 +236,7 @@ def family(
     spans: int = SPANS,
     invalid: str = "redraw",
     tries: int = TRIES,
+    chord_line: str = KEPT,
 ) -> Family:
     """Plan a family of perturbed blades; iterate over it for the blades.
 
@@ -253,6 +260,8 @@ def family(
         At how many spans sections are made and tested.
     invalid : str
         "redraw" variants that are not sound, up to `tries` draws, or "keep" them, marked.
+    chord_line : str
+        "kept" where the baseline has it, or as in the "paper": see `Blade.perturbed`.
 
     Raises
     ------
@@ -274,4 +283,5 @@ def family(
         blade.stations(spans),
         invalid,
         tries,
+        chord_line=chord_line,
     )

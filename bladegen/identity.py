@@ -73,6 +73,7 @@ def identity(family: Family) -> dict[str, Any]:
         },
         "design_fingerprint": fingerprint(design.values),
         "window": [family.window.start, family.window.end],
+        "chord_line": family.chord_line,
         "spans": len(family.eta),
         "invalid": family.invalid,
         "tries": family.tries,
@@ -86,7 +87,9 @@ def _space(space: ShapeSpace) -> str:
 
 def _blade(blade: Blade) -> str:
     """Fingerprint what a blade is made from: its definition, not what follows from it."""
-    deformations = [[_space(one.space), one.t, one.window] for one in blade.deformations]
+    deformations = [
+        [_space(one.space), one.t, one.window, one.chord_line] for one in blade.deformations
+    ]
     return fingerprint(
         [
             blade.definition,

@@ -7,8 +7,8 @@ lies in the processor's nearest cache, and sections do not know of each other: w
 does not depend on how many are made at once, where, or in what order.
 
 `made` is called from outside.  It is numpy's laws once more, with their notation and tolerances:
-`crossing_sections`, `SectionSplines.normalising` (`sizes`), `MinimumThickness`,
-`polygons.measure`, and a map to space.
+`crossing_sections`, `SectionSplines.normalising` and `ChordLines.onto` (`sizes`),
+`MinimumThickness`, `polygons.measure`, and a map to space.
 """
 
 from math import cos, inf, sin, sqrt
@@ -18,12 +18,13 @@ import numpy as np
 from bladegen.arrays import Array, Indices
 from bladegen.compiled import compiled
 from bladegen.edges import WINDOW
+from bladegen.plane_maps import Numbers, carried, carry, combine, motion_of, onto
 from bladegen.separation import ANGLES, APART, FLAT
-from bladegen.sizes import Numbers, Section, combine, sizing
+from bladegen.sizes import Section, chord_line, sizing
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 3  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 4  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -35,6 +36,7 @@ def made(
     slopes: Array,
     coefficients: Array,
     target: Array,
+    standing: Array,
     own: Array,
     known: Indices,
     chord: Array,
@@ -42,6 +44,7 @@ def made(
     sections: Array,
     measures: Array,
     edge: float,
+    kept: bool,
 ) -> None:
     """Test sections, bring them to unit chord and relative thickness, finish and place them.
 
@@ -55,6 +58,9 @@ def made(
         Of the sections.
     target : (k, b) array
         Relative thickness to reach.
+    standing : (k, b, 4) array
+        The nose and trailing-edge midpoint to bring a section's onto, or a motion: cosine, sine
+        and shift; not looked at without sections and measures.
     own : (k, b) array
         Filled: the relative thickness before.
     known : (k, b) array of int
@@ -69,6 +75,8 @@ def made(
         Filled: `polygons.MEASURES` [m].
     edge : float
         Least thickness of the trailing edges [m].
+    kept : bool
+        Whether `standing` holds chord lines; else motions.
     """
     spans, count, features, _ = coefficients.shape
     points, moved = np.empty((2, len(u))), np.empty((2, len(u)))
@@ -78,11 +86,17 @@ def made(
             c = coefficients[k, b]
             combine(values[k], c, points)
             known[k, b] = SOUND if laddered(points) else compared(points, moved)
-            total, own[k, b] = sizing(
-                Section(u, slopes[k], c, points), values[k], target[k, b], now, moved, work
-            )
+            section = Section(u, slopes[k], c, points)
+            total, own[k, b] = sizing(section, values[k], target[k, b], now, moved, work)
             if len(sections):
                 carry(points, total)
+                carried(c, total, now)
+                there = standing[k, b]
+                if kept:
+                    line = chord_line(Section(u, slopes[k], now, points), work)
+                    carry(points, onto(line, there))
+                else:
+                    carry(points, motion_of(there))
                 finish(points, edge / chord[b, k])
                 place(points, to_space[b, k], sections[b, k])
             if len(measures):
@@ -160,17 +174,6 @@ def following(i: int, way: int, n: int) -> int:
     """Return the landmark one step on around a contour of n."""
     i += way
     return 0 if i == n else n - 1 if i < 0 else i
-
-
-@compiled
-def carry(points: Array, total: Numbers) -> None:
-    """Map a section."""
-    x, y = points[0], points[1]
-    a, b, c, d, e, f = total
-    for i in range(len(x)):
-        p, q = x[i], y[i]
-        x[i] = a * p + c * q + e
-        y[i] = b * p + d * q + f
 
 
 @compiled

@@ -11,6 +11,7 @@ import numpy as np
 
 from bladegen import affine
 from bladegen.arrays import Array, ArrayLike
+from bladegen.chord_lines import KEPT
 from bladegen.crossing import crossing_sections
 from bladegen.definition import BladeDefinition
 from bladegen.deformation import (
@@ -64,6 +65,7 @@ class Perturbable:
         twist_scale: float = 1.0,
         prebend_scale: float = 1.0,
         window: Window | None = None,
+        chord_line: str = KEPT,
         allow_extrapolation: bool = False,
         name: str | None = None,
     ) -> Self:
@@ -80,6 +82,10 @@ class Perturbable:
         window : Window, optional
             Where shape, thickness, camber, chord and twist change; by default not on round
             roots, and fully from the first lifting airfoil on.
+        chord_line : str
+            "kept": after `t` moved the shape, each section is turned and shifted in its plane
+            until chord line and nose are those it had, so that twist stays twist; "paper": it
+            stays where the paper's formula leaves it, turned by up to some degrees.
         allow_extrapolation : bool
             Take coordinates beyond the range of the space's data.
         name : str, optional
@@ -95,6 +101,7 @@ class Perturbable:
             t,
             AffineChange(thickness, camber, chord, twist, chord_scale, twist_scale, prebend_scale),
             window=window,
+            chord_line=chord_line,
             allow_extrapolation=allow_extrapolation,
             name=name,
         )
@@ -107,6 +114,7 @@ class Perturbable:
         affine_change: AffineChange,
         *,
         window: Window | None = None,
+        chord_line: str = KEPT,
         allow_extrapolation: bool = False,
         name: str | None = None,
     ) -> Self:
@@ -121,10 +129,16 @@ class Perturbable:
         if coordinates.values.size:
             deformations += (
                 deformation_of(
-                    space, coordinates, window, self.u, allow_extrapolation=allow_extrapolation
+                    space,
+                    coordinates,
+                    window,
+                    self.u,
+                    allow_extrapolation=allow_extrapolation,
+                    chord_line=chord_line,
                 ),
             )
             asked |= {"pga": coordinates.values.tolist(), "pga_at_eta": coordinates.grid.tolist()}
+            asked |= {} if chord_line == KEPT else {"chord_line": chord_line}
         thickening = Thickening(float(affine_change.thickening), window)
         definition = affine_change.applied(self.definition, window)
         return self._with(

@@ -198,11 +198,18 @@ class SectionCurves:
         return farthest, np.where(alone, farthest, self._peak(other + first))
 
     @property
+    def has_second_nose(self) -> Mask:
+        """Which sections have another peak nearly as far from the trailing edge, (k,)."""
+        one, two = self._noses
+        second: Mask = np.any(one != two, axis=-1)
+        return second
+
+    @property
     def has_rivals(self) -> Mask:
         """Which sections have another nose that shares in the leading edge, (k,)."""
         one, two = self._noses
         near = np.abs(self._reach(one) - self._reach(two)) < 2.0 * AMBIGUOUS
-        rivals: Mask = near & np.any(one != two, axis=-1)
+        rivals: Mask = near & self.has_second_nose
         return rivals
 
     @cached_property

@@ -6,6 +6,7 @@ edges are brought to their width over span; deformations act on what results.  S
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from bladegen import affine
 from bladegen.arrays import Array
+from bladegen.chord_lines import KEPT, ChordLines, Motions
 from bladegen.definition import pchip
 from bladegen.interpolation import Parameter, Path, PathMaker, SectionSpline
 from bladegen.landmarks import Contour
@@ -75,6 +77,49 @@ class Shaped(Perturbable):
         for deformation in self.deformations:
             X = deformation(X, eta)
         return X
+
+    def _stages(self, eta: Array, points: Array) -> list[Array]:
+        """Return sections (k, n, 2) before and after each deformation, not brought to size."""
+        X, M, _ = affine.standardise(points)
+        stages = [points]
+        for deformation in self.deformations:
+            deformed = deformation(X, eta)
+            stages.append(stages[-1] + (deformed - X) @ M)
+            X = deformed
+        return stages
+
+    def _restored(
+        self, stages: list[Array], thickness: Array | None
+    ) -> tuple[Array, Array, ChordLines, Motions]:
+        """Return the maps that bring the last of `_stages` to size and to its chord line.
+
+        The line is that of the stage before, but where a deformation leaves it as the paper
+        does.  The lines and the last motions are returned besides.
+        """
+        motions = Motions.none(len(stages[0]))
+        curves = self.splines.fit(stages[0])
+        A, c = curves.normalising(thickness)
+        lines = ChordLines.of(curves.mapped(A, c))
+        alone = lines.alone
+        for deformation, points in zip(self.deformations, stages[1:], strict=True):
+            curves = self.splines.fit(points)
+            A, c = curves.normalising(thickness)
+            own = ChordLines.of(curves.mapped(A, c))
+            alone = alone & own.alone
+            if deformation.chord_line == KEPT:
+                motions = own.onto(lines)
+            else:
+                lines = own.moved(motions)
+        return *motions.after(A, c), replace(lines, alone=alone), motions
+
+    def chord_lines(self, eta: Array, thickness: Array | None) -> tuple[ChordLines, Motions]:
+        """Return chord lines of the sections at span fractions (k,), and how they got there.
+
+        That is where sections of this blade have them if they are brought to the relative
+        `thickness` (k,), and the motions that the last deformation that keeps them took.
+        """
+        plain, _, M, b = self.shapes(eta)
+        return self._restored(self._stages(eta, affine.restore(plain, M, b)), thickness)[2:]
 
     def shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]:
         """Return the shapes (k, n, 2) at span fractions (k,), the same deformed, and M and b.

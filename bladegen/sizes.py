@@ -12,15 +12,15 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.compiled import compiled
+from bladegen.plane_maps import Numbers, between, carried, combine, distance, followed, turned
 from bladegen.resizing import RIVAL
 from bladegen.roots import ITERATIONS, PARAMETER_TOLERANCE, ROUNDING
 from bladegen.sections import AMBIGUOUS, EVEN, SAME_NOSE, SETTLED
 
-__all__ = ["Numbers", "Section", "combine", "sizing"]
+__all__ = ["Section", "chord_line", "sizing"]
 
 ACROSS = 8  # Newton steps to the point at the same x on the other side; two are usual
 REACH = 4.0  # landmarks that one step towards the thickest place may pass
-Numbers = tuple[float, ...]
 Room = tuple[Array, Array, Array]  # for coefficients (F, 2), points (2, n), and n numbers
 
 
@@ -31,23 +31,6 @@ class Section(NamedTuple):
     slopes: Array
     c: Array
     points: Array
-
-
-@compiled
-def combine(values: Array, c: Array, points: Array) -> None:
-    """Fill points with the section of coefficients (F, 2), F odd, in features values (F, n)."""
-    x, y = points[0], points[1]
-    last = len(values) - 1
-    v, vx, vy = values[last], c[last, 0], c[last, 1]
-    for i in range(len(x)):
-        x[i] = vx * v[i]
-        y[i] = vy * v[i]
-    for f in range(0, last, 2):
-        v, vx, vy = values[f], c[f, 0], c[f, 1]
-        w, wx, wy = values[f + 1], c[f + 1, 0], c[f + 1, 1]
-        for i in range(len(x)):
-            x[i] += vx * v[i] + wx * w[i]
-            y[i] += vy * v[i] + wy * w[i]
 
 
 @compiled
@@ -65,22 +48,11 @@ def sizing(
     for _ in range(ITERATIONS):  # away from noses that agree
         if not either:
             break
-        for f in range(len(c)):
-            c[f, 0] = s.c[f, 0] * total[0] + s.c[f, 1] * total[2]
-            c[f, 1] = s.c[f, 0] * total[1] + s.c[f, 1] * total[3]
-        c[-1, 0] += total[4]
-        c[-1, 1] += total[5]
+        carried(s.c, total, c)
         combine(values, c, points)
         here = Section(s.u, s.slopes, c, points)
         more, _, either = step(here, values, target, now, moved, work)
-        total = (
-            total[0] * more[0] + total[1] * more[2],
-            total[0] * more[1] + total[1] * more[3],
-            total[2] * more[0] + total[3] * more[2],
-            total[2] * more[1] + total[3] * more[3],
-            total[4] * more[0] + total[5] * more[2] + more[4],
-            total[4] * more[1] + total[5] * more[3] + more[5],
-        )
+        total = followed(total, more)
     return total, own
 
 
@@ -108,9 +80,7 @@ def resizing(s: Section, target: float, work: Array) -> tuple[Numbers, float, bo
     one, two, edge = noses(s, work)
     r1, r2 = distance(one, edge), distance(two, edge)
     chord, ahead = max(r1, r2), r1 - r2
-    f = min(max(ahead / AMBIGUOUS, -1.0), 1.0)
-    share = 0.5 - 0.25 * f * (3.0 - f * f)
-    lead = between(one, two, share)
+    lead = between(one, two, led(ahead))
     length = distance(lead, edge)
     along = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length
     thickness = thickest(s, along, work)
@@ -126,6 +96,21 @@ def resizing(s: Section, target: float, work: Array) -> tuple[Numbers, float, bo
     rivals = one != two and abs(ahead) < 2.0 * AMBIGUOUS
     passed = one != two and q1 - q2 < RIVAL * length
     return stretching(lead, along, stretch, max(q1, q2)), thickness / chord, rivals, passed
+
+
+@compiled
+def led(ahead: float) -> float:
+    """Return the second nose's share in the leading edge, where the first is so far ahead."""
+    f = min(max(ahead / AMBIGUOUS, -1.0), 1.0)
+    return 0.5 - 0.25 * f * (3.0 - f * f)
+
+
+@compiled
+def chord_line(s: Section, work: Array) -> Numbers:
+    """Return x and y of the leading edge and of the trailing-edge midpoint (`ChordLines.of`)."""
+    one, two, edge = noses(s, work)
+    lead = between(one, two, led(distance(one, edge) - distance(two, edge)))
+    return lead[0], lead[1], edge[0], edge[1]
 
 
 @compiled
@@ -213,25 +198,6 @@ def stretched(
     share = min(max(-y1 / (y2 - y1), 0.0), 1.0)
     held = 2.0 * sin(asin(1.0 - 2.0 * share) / 3.0)
     return total, held - ahead / AMBIGUOUS
-
-
-@compiled
-def between(one: Numbers, two: Numbers, share: float) -> Numbers:
-    """Return the point at a share of the way from one to another."""
-    return one[0] + share * (two[0] - one[0]), one[1] + share * (two[1] - one[1])
-
-
-@compiled
-def distance(point: Numbers, other: Numbers) -> float:
-    """Return the distance of two points."""
-    x, y = point[0] - other[0], point[1] - other[1]
-    return sqrt(x * x + y * y)
-
-
-@compiled
-def turned(x: float, y: float, along: Numbers) -> Numbers:
-    """Return a vector's parts along a direction and normal to it."""
-    return x * along[0] + y * along[1], y * along[0] - x * along[1]
 
 
 @compiled

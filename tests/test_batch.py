@@ -165,3 +165,24 @@ def test_another_window_shares_what_it_does_not_touch():
     assert_array_equal(other.evaluate(t, change).sections, fresh.evaluate(t, change).sections)
     assert other.features is made.features
     assert_array_equal(made.evaluate(t, change).sections, before.sections)
+
+
+@pytest.mark.parametrize("chord_line", ["kept", "paper"])
+def test_a_batch_treats_chord_lines_as_perturbed_blades_do(chord_line):
+    base = batch_of("dtu10mw").blade.untested(
+        space(), [0.02, 0.01, 0.01, 0.0], AffineChange(), chord_line="paper"
+    )
+    base = base.untested(space(), [0.01, -0.01, 0.0, 0.0], AffineChange())
+    t = drawn(9, 3, 0.6)
+    made = SectionBatch(base, space(), Window(), SPANS, chord_line)
+    sections = made.evaluate(t, AffineChange()).sections
+    for i in range(len(t)):
+        variant = base.untested(
+            space(),
+            t[i],
+            AffineChange(),
+            window=Window(),
+            chord_line=chord_line,
+            allow_extrapolation=True,
+        )
+        assert_allclose(sections[i], variant.sections(SPANS), rtol=0, atol=1e-9)

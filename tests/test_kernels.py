@@ -14,7 +14,7 @@ from numba.core.caching import CacheImpl
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen import compiled, kernels, polygons, sizes
+from bladegen import compiled, kernels, plane_maps, polygons, sizes
 from bladegen.batch import SectionBatch
 from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange, Window
@@ -42,11 +42,13 @@ def loaded(module, **names):
 @cache
 def plain():
     """The kernels as plain Python."""
-    known = {name: sys.modules[name] for name in ("bladegen.compiled", "bladegen.sizes")}
+    names = ("compiled", "plane_maps", "sizes")
+    known = {f"bladegen.{name}": sys.modules[f"bladegen.{name}"] for name in names}
     numba.config.DISABLE_JIT = True
     try:
         decorator = loaded(compiled)
-        inner = loaded(sizes, **{"bladegen.compiled": decorator})
+        maps = loaded(plane_maps, **{"bladegen.compiled": decorator})
+        inner = loaded(sizes, **{"bladegen.plane_maps": maps})
         return loaded(kernels, **{"bladegen.sizes": inner})
     finally:
         numba.config.DISABLE_JIT = False
@@ -61,7 +63,9 @@ def made(by, values, raw, target, *, edge=0.002, dtype=np.float64):
     sections, measures = np.empty((b, k, COUNT, 3), dtype=dtype), np.empty((b, k, 7))
     chord = np.broadcast_to(CHORD, (b, k)).copy()
     to_space = np.broadcast_to(np.eye(3), (b, k, 3, 3)).copy()
-    by.made(U, values, slopes, raw, target, own, known, chord, to_space, sections, measures, edge)
+    still = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (k, b, 4)).copy()
+    given = U, values, slopes, raw, target, still, own, known, chord, to_space, sections, measures
+    by.made(*given, edge, False)
     return own, known, sections, measures
 
 

@@ -33,6 +33,7 @@ FLOW = [
     "roots",
     "resizing",
     "sections",
+    "chord_lines",
     "planform",
     "interpolation",
     "edges",
@@ -51,6 +52,7 @@ FLOW = [
     "polygons",
     "compiled",
     "orphans",
+    "plane_maps",
     "sizes",
     "kernels",
     "batch",
@@ -123,7 +125,8 @@ LATE = {
     "fastapi": {"studio"},
     "uvicorn": {"studio"},
 }
-COMPILED = {"compiled", "orphans", "sizes", "kernels"}  # load Numba with themselves: late too
+# load Numba with themselves, so come late too
+COMPILED = {"compiled", "orphans", "plane_maps", "sizes", "kernels"}
 CORE = FLOW[: FLOW.index("net") + 1]
 MODULES = sorted(PACKAGE.rglob("*.py"))
 

@@ -260,3 +260,34 @@ def test_a_lower_nose_that_a_stretch_makes_the_farthest_is_seen():
     eta = np.linspace(0.19, 0.4, 43)
     variant = blade.untested(SPACE, t, AffineChange())
     assert_allclose(variant.splines.fit(variant.profiles(eta)).chord, 1.0, atol=1e-9)
+
+
+@NAMES
+def test_chord_line_and_nose_stay_under_a_change_of_shape(blades, name):
+    blade, spans = blades[name], np.linspace(0.2, 0.98, 27)
+    before = blade.splines.fit(blade.profiles(spans))
+    kept = blade.perturbed(SPACE, T)
+    after = kept.splines.fit(kept.profiles(spans))
+    assert_allclose(after.leading_edge, before.leading_edge, rtol=0, atol=1e-12)
+    assert_allclose(after.trailing_edge, before.trailing_edge, rtol=0, atol=1e-12)
+    paper = blade.perturbed(SPACE, T, chord_line="paper")
+    raw = paper.splines.fit(paper.profiles(spans))
+    assert np.abs(raw.leading_edge - before.leading_edge).max() > 5e-3
+    assert_allclose(kept.points, paper.points, atol=0)  # no point of the Grassmannian moves
+    assert paper.changes[-1]["chord_line"] == "paper"
+    moved = affine.standardise(kept.profiles(spans))[0]
+    assert grassmann.distance(moved, affine.standardise(paper.profiles(spans))[0]).max() < 1e-7
+
+
+def test_each_change_keeps_the_chord_line_of_the_blade_that_it_changes(blades):
+    first = blades["dtu10mw"].perturbed(SPACE, T, chord_line="paper")
+    before = first.splines.fit(first.profiles(SPANS))
+    kept = first.untested(SPACE, np.negative(T), AffineChange())
+    after = kept.splines.fit(kept.profiles(SPANS))
+    assert_allclose(after.leading_edge, before.leading_edge, rtol=0, atol=1e-12)
+    assert_allclose(after.trailing_edge, before.trailing_edge, rtol=0, atol=1e-12)
+
+
+def test_a_convention_that_is_none_is_refused(blades):
+    with pytest.raises(PerturbationError, match="chord_line: got 'raw', allowed are kept"):
+        blades["nrel5mw"].perturbed(SPACE, T, chord_line="raw")

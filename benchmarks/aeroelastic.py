@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from figures import figure
+from figures import figure, parser
 
 HERE = Path(__file__).resolve()
 SPANS = np.linspace(0.015, 0.985, 41)
@@ -328,21 +328,28 @@ def check(definition: Any, case: str, tools: str, ccblade: str) -> None:
         "tilt": -np.degrees(rotor.tilt),
     }
     first = routes["bladegen"]
-    for route, blade in routes.items():
-        if blade is None:
-            continue
-        off = np.abs(np.array(blade["polars"]) - np.array(first["polars"])).max(axis=(0, 2))
-        found = child(ccblade, "power", json.dumps({**blade, **facts}))
-        if route != "bladegen":
-            for label, value in zip(("Cl", "Cd", "Cm"), off, strict=True):
-                figure(f"{route}, largest difference of {label}", case, value, "")
-        for key, value in (found or {}).items():
-            figure(f"{route}, {key} by CCBlade", case, value, "")
+    read = {route: blade for route, blade in routes.items() if blade is not None}
+    off: dict[str, Any] = {
+        route: np.abs(np.array(blade["polars"]) - np.array(first["polars"])).max(axis=(0, 2))
+        for route, blade in read.items()
+        if route != "bladegen"
+    }
+    for k, label in enumerate(("Cl", "Cd", "Cm")):
+        of = {route: float(off[route][k]) if route in off else None for route in routes}
+        del of["bladegen"]
+        figure(f"largest difference of {label}", case, "", of)
+    for key in ("CP", "CT"):
+        found: dict[str, Any] = dict.fromkeys(routes)
+        for route, blade in read.items():
+            made = child(ccblade, "power", json.dumps({**blade, **facts}))
+            found[route] = made[key] if made else None
+        if any(value is not None for value in found.values()):
+            figure(f"{key} by CCBlade", case, "", found)
 
 
 def main() -> None:
     """Print how what the tools read agrees, on a blade and on a variant."""
-    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options = parser(__doc__)
     options.add_argument("blade", nargs="?", help="a file with polars")
     options.add_argument("--tools", default=sys.executable, help="with openfast_io and wetb")
     options.add_argument("--ccblade", default=sys.executable, help="with wisdem")
@@ -363,6 +370,8 @@ def main() -> None:
     blade = bg.Blade.from_definition(definition)
     variant = blade.perturbed(bg.ShapeSpace.bundled(), CHANGE)
     check(definition, definition.name, asked.tools, asked.ccblade)
+    if asked.quick:
+        return
     for policy in ("keep", "estimate"):
         made, _ = prepared(variant, polars=policy)
         check(made, f"variant, {policy}", asked.tools, asked.ccblade)

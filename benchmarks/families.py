@@ -3,108 +3,133 @@
     python benchmarks/families.py [BLADE] [--count N]
 
 Sections: 100 spans of 401 landmarks, float64, every section tested; two threads. Memory is the
-time to fill as many bytes, freshly taken from the system, by the same threads in the same blocks.
-The plain loop makes variants one after the other through `Blade.perturbed`.  Medians of several
-runs, in turn.  A virtual machine may take longer for memory that nobody held for a second or two:
-so as much is filled and given back before each run, whatever is measured.  On a shared machine
-the processor's seconds say more than the clock's, and the program's own leave out what the system
-spends on memory; all three are printed, each beside those of memory and of the loop.
+time to fill, or to copy, as many bytes, freshly taken from the system, by the same threads in the
+same blocks.  The plain loop makes variants one after the other through `Blade.perturbed`, a few of
+them in each round, scaled to all.  All take turns, all are warm.  A virtual machine may take longer
+for memory that nobody held for a second or two: so as much is filled and given back before each
+run, whatever is measured.  On a shared machine the processor's seconds say more than the clock's,
+and the program's own leave out what the system spends on memory; all three are printed.
+
+STEP files are made of the first variants, every one of them, in one process as a family's are.
 """
 
-import argparse
 import gc
 import os
 import tempfile
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from figures import figure
+from figures import figure, parser
 from threadpoolctl import threadpool_limits
 
 import bladegen as bg
 from bladegen import exporters, net
+from bladegen.errors import ToleranceError
 from bladegen.families import BLOCK
 from bladegen.family_run import Order, run
 
 THREADS = 2
-RUNS = 5
+RUNS = 7
+LOOPED = 3  # variants a round of the plain loop
+STEPS = 15  # STEP files
 KINDS = "clock", "own work", "processor"
 
 
-def seconds(work):
+def spent(work: Callable[[], object]) -> tuple[float, float, float]:
     """Time on the clock, and of the processor: the program's own and all."""
     gc.collect()
     start, before = time.perf_counter(), os.times()
     kept = work()
-    spent, after = time.perf_counter() - start, os.times()
+    clock, after = time.perf_counter() - start, os.times()
     del kept
     own = after.user - before.user
-    return spent, own, own + after.system - before.system
+    return clock, own, own + after.system - before.system
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("blade", nargs="?", default="iea15mw")
-    parser.add_argument("--count", type=int, default=1000)
-    parser.add_argument("--reach", type=float, default=0.25)
-    asked = parser.parse_args()
+def main() -> None:
+    """Print the figures of one blade's family."""
+    options = parser(__doc__)
+    options.add_argument("blade", nargs="?", default="iea15mw")
+    options.add_argument("--count", type=int)
+    options.add_argument("--reach", type=float, default=0.25)
+    asked = options.parse_args()
+    count = asked.count or (2 * BLOCK if asked.quick else 1000)
+    runs, steps = (2, 2) if asked.quick else (RUNS, STEPS)
     blade = bg.Blade.from_definition(bg.read(asked.blade))
     space = bg.ShapeSpace.bundled()
-    family = bg.family(blade, space, count=asked.count, seed=7, reach=asked.reach)
-    blocks = [np.arange(i, min(i + BLOCK, asked.count)) for i in range(0, asked.count, BLOCK)]
+    family = bg.family(blade, space, count=count, seed=7, reach=asked.reach)
+    blocks = [np.arange(i, min(i + BLOCK, count)) for i in range(0, count, BLOCK)]
     shape = family.block(blocks[0][:2]).batch.sections.shape[1:]
-    size = asked.count * np.prod(shape) * 8
+    variants = list(bg.family(blade, space, count=runs * LOOPED, seed=7, reach=asked.reach))
+    shapes = iter([np.array(variant.changes[-1]["pga"][0]) for variant in variants])
+    blade.perturbed(space, 0.5 * np.array(variants[0].changes[-1]["pga"][0])).sections(family.eta)
 
-    def on_threads(work):
+    def on_threads(work: Callable[[np.ndarray], object]) -> list[object]:
         with ThreadPoolExecutor(THREADS) as pool, threadpool_limits(1):
             return list(pool.map(work, blocks))
 
-    def made(index):
-        return family.block(index).batch.sections
-
-    def written(index):
+    def filled(index: np.ndarray) -> np.ndarray:
         return np.full((len(index), *shape), 1.0)
 
     source = np.ones((BLOCK, *shape))
-    works = made, written, lambda index: source[: len(index)].copy()
-    taken = []
-    for _ in range(RUNS):
-        for work in works:
-            on_threads(written)
-            taken.append(seconds(lambda work=work: on_threads(work)))
-    first, memory, copied = np.median(np.reshape(taken, (RUNS, len(works), 3)), axis=0)
-    loop = []
-    for variant in list(bg.family(blade, space, count=6, seed=7, reach=asked.reach)):
-        t = np.array(variant.changes[-1]["pga"][0])
-        loop.append(seconds(lambda t=t: blade.perturbed(space, t).sections(family.eta)))
-    one = np.median(loop, axis=0) * asked.count
-    case = f"{asked.blade}, {asked.count} variants"
+    works: dict[str, Callable[[], object]] = {
+        "a family's blocks": lambda: on_threads(lambda index: family.block(index).batch.sections),
+        "filling memory": lambda: on_threads(filled),
+        "copying memory": lambda: on_threads(lambda index: source[: len(index)].copy()),
+        "a plain loop": lambda: [
+            blade.perturbed(space, next(shapes)).sections(family.eta) for _ in range(LOOPED)
+        ],
+    }
+    taken: dict[str, list[tuple[float, float, float]]] = {name: [] for name in works}
+    for _ in range(runs):
+        for name, work in works.items():
+            on_threads(filled)
+            taken[name].append(spent(work))
+    case = f"{asked.blade}, {count} variants"
     print(f"{case}: {len(family.eta)} x {shape[1]} landmarks, reach {asked.reach:g},")
-    print(f"{size / 1e6:.0f} MB, {THREADS} threads, medians of {RUNS}")
-    for beside, other in (
-        ("filling memory", memory),
-        ("copying memory", copied),
-        ("plain loop", one),
-    ):
-        for kind, ours, baseline in zip(KINDS, first, other, strict=True):
-            figure(f"sections, tested: {kind}", case, ours, "s", beside=beside, baseline=baseline)
+    print(f"{count * np.prod(shape) * 8 / 1e6:.0f} MB, {THREADS} threads")
+    for k, kind in enumerate(KINDS):
+        scale = {"a plain loop": count / LOOPED}
+        found = {n: [scale.get(n, 1.0) * one[k] for one in v] for n, v in taken.items()}
+        figure("sections, tested", f"{case}: {kind}", "s", found)
 
     with tempfile.TemporaryDirectory() as folder:
-        spent, *_ = seconds(lambda: run(Order(family, Path(folder) / "f"), jobs=THREADS))
-        figure(f"sections to files, {THREADS} processes", case, asked.count / spent, "variants/s")
-        spans = net.fitted(blade, exporters.Options().tolerance)[0].v
-        options = exporters.Options(spans=spans)
-        target = Path(folder) / "x.step"
-        with threadpool_limits(1):  # as a family's processes do
-            step = [
-                seconds(lambda v=v: exporters.write(exporters.Products(v, options), target))
-                for v in list(bg.family(blade, space, count=6, seed=7, reach=asked.reach))
-            ][1:]
-        clock, _, cpu = np.median(step, axis=0)
-        figure("STEP of a variant, one core: clock", asked.blade, clock, "s")
-        figure("STEP of a variant, one core: processor", asked.blade, cpu, "s")
+        files = []
+        for k in range(1 if asked.quick else 3):
+            order = Order(family, Path(folder) / f"family{k}")
+            files.append(spent(lambda order=order: run(order, jobs=THREADS))[0])
+        figure("manifest, properties and sections to files, two processes", case, "s", files)
+        write_steps(blade, space, asked.reach, steps, Path(folder) / "x.step")
+
+
+def write_steps(
+    blade: bg.Blade, space: bg.ShapeSpace, reach: float, count: int, target: Path
+) -> None:
+    """Print what STEP files of variants take; the baseline's is made first, and not counted."""
+    products = exporters.Products(blade, exporters.Options())
+    exporters.write(products, target)
+    spans = net.fitted(blade, products.options.tolerance)[0].v
+    options = exporters.Options(spans=spans)
+    clock, processor, off, missed = [], [], [], 0
+    with threadpool_limits(1):  # as a family's processes do
+        for variant in list(bg.family(blade, space, count=count, seed=7, reach=reach)):
+            products = exporters.Products(variant, options)
+            try:
+                each = spent(lambda products=products: exporters.write(products, target))
+            except ToleranceError:
+                missed += 1
+                continue
+            clock.append(each[0])
+            processor.append(each[2])
+            off.append(1e3 * products.solid.deviation.maximum)
+    case = f"{blade.name}, variants 0 to {count - 1}"
+    figure("STEP of a variant, one core", f"{case}: clock", "s", clock)
+    figure("STEP of a variant, one core", f"{case}: processor", "s", processor)
+    figure("STEP of a variant, off the blade by up to", case, "mm", off)
+    figure("STEP of a variant, out of tolerance", case, "files", missed)
 
 
 if __name__ == "__main__":

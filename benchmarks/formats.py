@@ -7,18 +7,19 @@ Largest distance between the sections of both blades at 121 spans, each to the o
 """
 
 import tempfile
-import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
-from figures import figure
+from figures import asked, figure, seconds
 
 import bladegen as bg
 from bladegen.arrays import Array
 from bladegen.definition import BladeDefinition, Distribution
 
 FILES = ("blade.csv", "blade.xlsx", "blade.htc", "blade.dat", "blade.yaml")
+RUNS = 5
 SPANS = np.linspace(0.0, 1.0, 121)
 
 
@@ -50,21 +51,20 @@ def off(one: BladeDefinition, other: BladeDefinition) -> float:
 
 def main() -> None:
     """Print what each format keeps of each blade."""
-    blades = [*map(bg.read, bg.bundled()), swept()]
+    quick = asked(__doc__).quick
+    blades = [*map(bg.read, bg.bundled()), swept()][: 1 if quick else None]
     for file in FILES:
         for first in blades:
             with tempfile.TemporaryDirectory() as folder:
                 path = Path(folder) / file
-                start = time.perf_counter()
-                bg.write(first, path)
-                written = time.perf_counter()
+                written = seconds({"": partial(bg.write, first, path)}, 2 if quick else RUNS)
+                read = seconds({"": partial(bg.read, path)}, 2 if quick else RUNS)
                 second = bg.read(path)
-                done = time.perf_counter()
                 case = f"{file}, {first.name}"
-                figure("out and in again, off by", case, off(first, second), "mm")
-                figure("rows of chord", case, len(second.chord.grid), "")
-                figure("written", case, written - start, "s")
-                figure("read", case, done - written, "s")
+                figure("out and in again, off by", case, "mm", off(first, second))
+                figure("rows of chord", case, "", len(second.chord.grid))
+                figure("written", case, "s", written)
+                figure("read", case, "s", read)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import gmsh
 import numpy as np
-from figures import figure
+from figures import asked, figure
 
 import bladegen as bg
 from bladegen import cad
@@ -25,15 +25,16 @@ FILES = {"default": cad.DEFAULT_TOLERANCE, "light": 1e-3}
 
 def main() -> None:
     """Mesh each file at each density."""
+    quick = asked(__doc__).quick
     with tempfile.TemporaryDirectory() as folder:
-        for name in bg.bundled():
+        for name in bg.bundled()[: 1 if quick else None]:
             blade = bg.Blade.from_definition(bg.read(name))
             for tip in (flat_tip, round_tip):
                 for label, tolerance in FILES.items():
                     path = Path(folder) / "blade.step"
                     solid = cad.solid(blade, tolerance=tolerance, tip=tip)
                     bg.export(blade, path, tolerance=tolerance, tip=tip)
-                    for size in SIZES:
+                    for size in SIZES[: 1 if quick else None]:
                         case = f"{name}, {label}, {tip.__name__[:-4]} tip, {size:g} mm"
                         measure(case, path, size, solid)
 
@@ -71,7 +72,7 @@ def measure(case: str, path: Path, size: float, solid: cad.Solid) -> None:
         ("gmsh, worst quality, sides", min(worst[:2]), ""),
         ("gmsh, worst quality, all faces", min(worst), ""),
     ):
-        figure(what, case, float(value), unit)
+        figure(what, case, unit, float(value))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """How long a blade file takes to read: python benchmarks/reading.py
 
-Prints the median of several readings (parse and definition) beside the bare parsing of the same
-file by PyYAML's safe loaders, for the bundled blades and for a file of about 250 kB: the NREL
-5 MW with polars, as windIO files carry them.
+Readings (parse and definition) beside the bare parsing of the same file by PyYAML's safe loaders,
+for the bundled blades and for a file of about 250 kB: the NREL 5 MW with polars, as windIO files
+carry them.
 """
 
 import tempfile
@@ -10,11 +10,12 @@ from functools import partial
 from pathlib import Path
 
 import yaml
-from figures import figure, seconds
+from figures import asked, figure, seconds
 
 from bladegen.readers import bundled, read
 from bladegen.readers.yaml_file import load_yaml
 
+RUNS = 15
 ANGLES = 160  # angles of attack a polar: brings the file to about 250 kB
 
 
@@ -34,19 +35,22 @@ def with_polars(path: Path) -> str:
 
 def main() -> None:
     """Print each file's figures."""
+    quick = asked(__doc__).quick
     loaders = {"CSafeLoader": getattr(yaml, "CSafeLoader", None), "safe_load": yaml.SafeLoader}
     with tempfile.TemporaryDirectory() as folder:
         large = Path(folder) / "nrel5mw_polars.yaml"
         paths = [Path(read(name).source) for name in bundled()]
         large.write_text(with_polars(paths[-1]), encoding="utf-8")
-        for path in (*paths, large):
+        for path in (*paths, large)[: 1 if quick else None]:
             content = path.read_bytes()
-            spent = 1e3 * seconds(partial(read, path))
-            for name, loader in loaders.items():
-                if loader is not None:
-                    bare = 1e3 * seconds(partial(yaml.load, content, loader), runs=3)
-                    case = f"{path.stem}, {len(content) / 1e3:.0f} kB"
-                    figure("reading", case, spent, "ms", beside=f"parsing, {name}", baseline=bare)
+            calls = {"bladegen, to a definition": partial(read, path)} | {
+                f"PyYAML, {name}, parsed only": partial(yaml.load, content, loader)
+                for name, loader in loaders.items()
+                if loader is not None
+            }
+            spent = seconds(calls, 2 if quick else RUNS)
+            case = f"{path.stem}, {len(content) / 1e3:.0f} kB"
+            figure("reading", case, "ms", {who: [1e3 * s for s in of] for who, of in spent.items()})
 
 
 if __name__ == "__main__":

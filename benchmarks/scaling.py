@@ -1,7 +1,7 @@
 """How cost and memory grow with landmarks, sections and blades: python benchmarks/scaling.py
 
-Each row's baseline is the smallest size's figure times the growth of the size: a ratio of 1 is
-linear, above 1 less than linear.
+Beside each cost stands its median divided by the size: it falls where a fixed part still counts,
+stays where the cost is linear, and rises where it is worse.
 """
 
 import resource
@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from figures import figure, seconds
+from figures import figure, parser, seconds, spread
 
 import bladegen as bg
 from bladegen import mesh
@@ -19,81 +19,89 @@ LANDMARKS = (101, 201, 401, 801)
 SECTIONS = (50, 100, 200, 400, 800)
 VARIANTS = (64, 256, 1024)
 BLADE = "iea15mw"
-LINEAR = "if linear"
+RUNS = 7
 
 
-def growth(what: str, sizes: Sequence[int], cost: Callable[[int], float], unit: str) -> None:
-    """Print a cost at each size beside what it would be if it grew as the size does."""
-    first = cost(sizes[0])
+def growth(
+    what: str, sizes: Sequence[int], cost: Callable[[int], float | list[float]], unit: str
+) -> None:
+    """Print a cost at each size, and what that is a piece."""
     for size in sizes:
-        value = first if size == sizes[0] else cost(size)
-        figure(
-            what, f"{BLADE}, {size}", value, unit, beside=LINEAR, baseline=first * size / sizes[0]
-        )
+        value = cost(size)
+        middle = spread(value)[0] if isinstance(value, list) else value
+        figure(what, f"{BLADE}, {size}", unit, {"all": value, "each": middle / size})
 
 
-def family_seconds(count: int) -> float:
-    """Time of a family's sections, dropped block by block."""
+def taken(call: Callable[[], object], runs: int) -> list[float]:
+    """Return what runs of a call took [ms]."""
+    return [1e3 * one for one in seconds({"": call}, runs)[""]]
+
+
+def family(count: int) -> Callable[[], None]:
+    """Return a call that makes a family's sections and drops them block by block."""
     blade, space = bg.Blade.from_definition(bg.read(BLADE)), bg.ShapeSpace.bundled()
-    family = bg.family(blade, space, count=count, seed=7, reach=0.5)
+    variants = bg.family(blade, space, count=count, seed=7, reach=0.5)
     blocks = [np.arange(i, min(i + 64, count)) for i in range(0, count, 64)]
 
     def run() -> None:
         for block in blocks:
-            family.block(block)
+            variants.block(block)
 
-    return seconds(run, runs=3)
+    return run
 
 
 def family_memory(count: int) -> float:
     """Peak memory of a process that makes a family and drops it block by block [MB]."""
     done = subprocess.run(
-        [sys.executable, __file__, str(count)], capture_output=True, text=True, check=True
-    )
+        [sys.executable, __file__, "--family", str(count)],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
     return float(done.stdout)
 
 
 def main() -> None:
     """Print how times and memory grow."""
-    definition = bg.read(BLADE)
+    options = parser(__doc__)
+    options.add_argument("--family", type=int, help="for the processes that this one starts")
+    asked = options.parse_args()
+    if asked.family:
+        family(asked.family)()
+        print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3)
+        return
+    definition, runs, some = bg.read(BLADE), RUNS, slice(None)
+    if asked.quick:
+        runs, some = 2, slice(0, 2)
 
     def blade(landmarks: int) -> bg.Blade:
         return bg.Blade.from_definition(definition, landmarks=landmarks)
 
-    growth(
-        "blade from definition, landmarks",
-        LANDMARKS,
-        lambda n: 1e3 * seconds(lambda: blade(n)),
-        "ms",
-    )
+    growth("blade, landmarks", LANDMARKS[some], lambda n: taken(lambda: blade(n), runs), "ms")
     eta = np.linspace(0.0, 1.0, 100)
 
-    def hundred(n: int) -> float:
+    def hundred(n: int) -> list[float]:
         made = blade(n)
-        return 1e3 * seconds(lambda: made.sections(eta))
+        return taken(lambda: made.sections(eta), runs)
 
-    growth("100 sections, landmarks", LANDMARKS, hundred, "ms")
+    growth("100 sections, landmarks", LANDMARKS[some], hundred, "ms")
     made = blade(401)
-    made.sections(eta)
 
-    def sections(k: int) -> float:
+    def sections(k: int) -> list[float]:
         spans = np.linspace(0.0, 1.0, k)
-        return 1e3 * seconds(lambda: made.sections(spans))
+        return taken(lambda: made.sections(spans), runs)
 
-    growth("sections of 401 landmarks", SECTIONS, sections, "ms")
+    def meshed(k: int) -> list[float]:
+        return taken(lambda: mesh.from_blade(made, stations=k), runs)
+
+    growth("sections of 401 landmarks", SECTIONS[some], sections, "ms")
+    growth("mesh, sections of 401 landmarks", SECTIONS[some], meshed, "ms")
     growth(
-        "mesh, sections of 401 landmarks",
-        SECTIONS,
-        lambda k: 1e3 * seconds(lambda: mesh.from_blade(made, stations=k), runs=3),
+        "family in one thread, variants",
+        VARIANTS[some],
+        lambda count: taken(family(count), runs),
         "ms",
     )
-    growth("family in one thread, variants", VARIANTS, family_seconds, "s")
-    growth("peak memory of that, variants", VARIANTS, family_memory, "MB")
+    growth("peak memory of that, variants", VARIANTS[some], family_memory, "MB")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:
-        family_seconds(int(sys.argv[1]))
-        print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3)
-    else:
-        main()
+    main()

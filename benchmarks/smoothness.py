@@ -8,17 +8,15 @@ airfoils' roughness; and what bends over span that the definition does not, with
 own, and with those that the path happens to have beside it.
 """
 
-import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from figures import figure
+from figures import figure, parser
 
 import bladegen as bg
 from bladegen import cad, cad_files, combs
 from bladegen.blade import PATHS
-from bladegen.fairing import TOLERANCE
 from bladegen.inflections import inflections
 from bladegen.smoothness import edge_bulges
 
@@ -39,34 +37,34 @@ def solid(blade: bg.Blade, tolerance: float) -> list[float]:
 
 def main() -> None:
     """Print all figures."""
-    names = sys.argv[1:] or bg.bundled()
+    options = parser(__doc__)
+    options.add_argument("files", nargs="*", help="blades; the bundled ones if none is named")
+    asked = options.parse_args()
+    names = asked.files or bg.bundled()[: 1 if asked.quick else None]
+    cases = [(name, path) for name in names for path in PATHS][: 1 if asked.quick else None]
+    for name, path in cases:
+        definition = bg.read(name)
+        blades = {
+            "faired": bg.Blade.from_definition(definition, path=path),
+            "not faired": bg.Blade.from_definition(definition, path=path, fairing=None),
+        }
+        for tolerance in TOLERANCES[-1 if asked.quick else 0 :]:
+            case = f"{definition.name}, {path}, {1e3 * tolerance:g} mm"
+            made = {label: solid(blade, tolerance) for label, blade in blades.items()}
+            for k, (what, unit) in enumerate(UNITS.items()):
+                figure(what, case, unit, {label: found[k] for label, found in made.items()})
+    for name, path in cases:
+        own = bg.Blade.from_definition(bg.read(name), path=path)
+        both = {"own widths": own, "the path's widths": replace(own, edge_width=None)}
+        for what, find in (("bulges of the edge", edge_bulges), ("inflections", inflections)):
+            found = {label: len(find(blade)) for label, blade in both.items()}
+            figure(what, f"{own.name}, {path}", "", found)
     for name in names:
-        for path in PATHS:
-            faired, given = (
-                bg.Blade.from_definition(bg.read(name), path=path, fairing=fairing)
-                for fairing in (TOLERANCE, None)
-            )
-            for tolerance in TOLERANCES:
-                case = f"{faired.name}, {path}, {1e3 * tolerance:g} mm"
-                both = zip(
-                    UNITS.items(), solid(faired, tolerance), solid(given, tolerance), strict=True
-                )
-                for (what, unit), value, before in both:
-                    figure(what, case, value, unit, beside="not faired", baseline=before)
-            own, passing = faired, replace(faired, edge_width=None)
-            for what, found in (("bulges of the edge", edge_bulges), ("inflections", inflections)):
-                value, before = (float(len(found(blade))) for blade in (own, passing))
-                figure(what, f"{own.name}, {path}", value, "")
-                figure(f"{what}, path's widths", f"{own.name}, {path}", before, "")
-        for one in combs.figures(bg.Blade.from_definition(bg.read(name))):
-            figure(
-                "roughness of the airfoil",
-                one["airfoil"],
-                one["roughness_faired"],
-                "1/chord",
-                beside="not faired",
-                baseline=one["roughness_given"],
-            )
+        blade = bg.Blade.from_definition(bg.read(name))
+        for one in combs.figures(blade):
+            found = {"faired": one["roughness_faired"], "not faired": one["roughness_given"]}
+            case = f"{blade.name}, {one['airfoil']}"
+            figure("roughness of the airfoil", case, "1/chord", found)
 
 
 if __name__ == "__main__":

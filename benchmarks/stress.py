@@ -28,6 +28,7 @@ from typing import Any
 
 import numpy as np
 from figures import figure
+from figures import parser as arguments
 
 import bladegen as bg
 from bladegen import cad, cad_files, checks, edges, properties
@@ -223,15 +224,15 @@ def shown(rows: list[dict[str, Any]]) -> None:
         ("meshed by gmsh", [r for r in meshes if r["meshable"]], meshes),
         ("sound throughout", [r for r in rows if sound(r)], rows),
     ):
-        figure(f"perturbed solids: {name}", f"of {len(of)}", len(good), "solids")
+        figure(f"perturbed solids: {name}", f"of {len(of)}", "solids", len(good))
     if made:
+        case = f"blades {rows[0]['number']} to {rows[-1]['number']}"
         ratio = [row["deviation_mm"] / row["tolerance_mm"] for row in made]
-        seconds = sorted(row["seconds"] for row in made)
-        print(f"deviation over tolerance, largest  {max(ratio):.3f}")
+        figure("perturbed solids: deviation over tolerance", case, "", ratio)
+        figure("perturbed solids: a blade", case, "s", [row["seconds"] for row in made])
         for key in ("volume", "volume_occt", "volume_read"):
             off = max((abs(row[key]) for row in made if key in row), default=0.0)
             print(f"{key:11s} off by at most  {off:.1e}")
-        print(f"seconds a blade, median and largest  {np.median(seconds):.1f} {seconds[-1]:.1f}")
     for error, count in Counter(row["error"] for row in rows if row["error"]).most_common(20):
         print(f"  {count} x {error}")
     for row in rows:
@@ -241,8 +242,8 @@ def shown(rows: list[dict[str, Any]]) -> None:
 
 def main() -> None:
     """Make what is missing of the blades asked for, then print what all came to."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=12)
+    parser = arguments(__doc__)
+    parser.add_argument("--count", type=int)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seed", type=int, default=8)
     parser.add_argument(
@@ -254,12 +255,13 @@ def main() -> None:
         first, last = map(int, asked.work.split(":"))
         work(first, last, asked.seed)
         return
+    count = asked.count or (1 if asked.quick else 12)
     rows: dict[int, dict[str, Any]] = {}
     for path in asked.results or ():
         rows |= known(path)
-    for start in range(asked.first, asked.first + asked.count, PIECE):
+    for start in range(asked.first, asked.first + count, PIECE):
         missing = [
-            n for n in range(start, min(start + PIECE, asked.first + asked.count)) if n not in rows
+            n for n in range(start, min(start + PIECE, asked.first + count)) if n not in rows
         ]
         if not missing:
             continue

@@ -1,31 +1,38 @@
-"""All benchmarks in one table: python benchmarks/table.py [FILE.md] [--only NAME ...]
+"""All benchmarks in one document: python benchmarks/table.py [FILE.md] [--only NAME ...] [--quick]
 
-Runs each benchmark of this folder as a process of its own and writes what they measured, ours and
-the baseline of the same run side by side, with the machine and the versions: `docs/measured.md`.
+Runs each benchmark of this folder as a process of its own and writes what they measured, all
+contenders of one run side by side, with the machine and the versions: `docs/measured.md`.  With
+`--only`, what the document holds of the others stays.
 """
 
 import argparse
 import json
 import os
 import platform
+import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+import time
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from figures import TABLE
+from figures import SPREAD, TABLE
 
 HERE = Path(__file__).resolve().parent
 LIBRARIES = ("bladegen", "numpy", "scipy", "numba", "cadquery-ocp", "trimesh", "pyvista", "zarr")
 SKIPPED = {"figures", "table", "wisdem_run"}  # the last needs another environment
-HEAD = """# Measured
+HEAD = f"""# Measured
 
-All of `benchmarks/`, in one run: `make bench`. Times are medians; a ratio is the baseline's figure
-over ours. Machines differ and are shared: compare within a row.
+All of `benchmarks/`, in one run: `make bench`. Contenders take turns within a run, all warm.
+Where a cell holds four figures they are the {SPREAD} of as many runs, variants or
+stations as the head says. Machines differ and are shared: compare within a row. The rules that all
+benchmarks keep are at the head of `benchmarks/figures.py`.
 """
+Row = dict[str, Any]
 
 
 def machine() -> str:
@@ -47,59 +54,96 @@ def machine() -> str:
     return f"{model}, {cores} cores, {platform.system()}; {', '.join([python, *found])}."
 
 
-def rows_of(script: Path) -> list[dict[str, Any]]:
+def rows_of(script: Path, quick: bool) -> list[Row]:
     """Run one benchmark and return the figures it gave."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "figures.jsonl"
         environment = {**os.environ, TABLE: str(path)}
-        done = subprocess.run([sys.executable, str(script)], env=environment, check=False)
+        command = [sys.executable, str(script), *(["--quick"] if quick else [])]
+        done = subprocess.run(command, env=environment, check=False)
         if done.returncode:
             sys.exit(f"{script.name} ended with {done.returncode}")
         lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
     return [json.loads(line) for line in lines]
 
 
-def shown(value: float | None, unit: str) -> str:
-    """Return a figure with its unit, or nothing."""
-    return "" if value is None else f"{value:.3g} {unit}".strip()
+def shown(values: Sequence[float] | None) -> str:
+    """Return a contender's figure, or its spread without the count."""
+    if values is None:
+        return "not done"
+    return " / ".join(f"{value:.3g}" for value in values[:4])
 
 
-def markdown(title: str, rows: Iterable[dict[str, Any]]) -> str:
-    """Return one benchmark's rows as a table."""
-    lines = [
-        f"\n## `benchmarks/{title}.py`\n",
-        "| what | on | bladegen | baseline | | ratio |",
-        "| --- | --- | --- | --- | --- | --- |",
-    ]
+def tables(rows: Sequence[Row]) -> list[str]:
+    """Return a benchmark's rows as tables: a line a case, a column a contender of a figure.
+
+    Figures that were taken on the same cases by the same contenders stand in one table.
+    """
+    by_what: dict[str, list[Row]] = {}
     for row in rows:
-        compared = row["baseline"] is not None and row["value"]
-        ratio = f"{row['baseline'] / row['value']:.3g}" if compared else ""
-        cells = (
-            row["what"],
-            row["case"],
-            shown(row["value"], row["unit"]),
-            row["beside"],
-            shown(row["baseline"], row["unit"]),
-            ratio,
-        )
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        by_what.setdefault(row["what"], []).append(row)
+    return [
+        table([of for _, of in group])
+        for _, group in groupby(by_what.items(), key=lambda item: cases(item[1]))
+    ]
+
+
+def cases(rows: Sequence[Row]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return what rows of one figure were taken on, and by whom."""
+    return tuple(row["case"] for row in rows), tuple(rows[0]["found"])
+
+
+def table(columns: Sequence[Sequence[Row]]) -> str:
+    """Return one table of figures that were taken on the same cases; one figure is its title."""
+    names = tuple(columns[0][0]["found"])
+    titled = len(columns) == 1 and names != ("",)
+    title, heads = "", []
+    for rows in columns:
+        what = rows[0]["what"] + (f" [{rows[0]['unit']}]" if rows[0]["unit"] else "")
+        for name in names:
+            of = counted([row["found"][name] for row in rows])
+            heads.append(", ".join(filter(None, (name, of) if titled else (what, name, of))))
+        title = f"{what[:1].upper()}{what[1:]}:\n\n" if titled else ""
+    lines = [f"| on | {' | '.join(heads)} |", "| --- " * (1 + len(heads)) + "|"]
+    for rows in zip(*columns, strict=True):
+        cells = [shown(row["found"][name]) for row in rows for name in names]
+        lines.append(f"| {rows[0]['case']} | {' | '.join(cells)} |")
+    return title + "\n".join(lines) + "\n"
+
+
+def counted(found: Sequence[Sequence[float] | None]) -> str:
+    """Return of how many values the spreads of a column are; nothing for single values."""
+    counts = sorted({int(values[-1]) for values in found if values and len(values) > 1})
+    return f"of {' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))}" if counts else ""
+
+
+def parts(text: str) -> dict[str, str]:
+    """Return what an earlier document holds of each benchmark."""
+    pieces = re.split(r"\n## `benchmarks/(\w+)\.py`\n", text)
+    return dict(zip(pieces[1::2], pieces[2::2], strict=True))
 
 
 def main() -> None:
-    """Run the benchmarks and write the table."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("target", nargs="?", type=Path, default=HERE.parent / "docs/measured.md")
-    parser.add_argument("--only", nargs="*", help="names of benchmarks, all if not given")
-    asked = parser.parse_args()
+    """Run the benchmarks and write the document."""
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("target", nargs="?", type=Path, default=HERE.parent / "docs/measured.md")
+    options.add_argument("--only", nargs="*", help="names of benchmarks, all if not given")
+    options.add_argument("--quick", action="store_true", help="try all at a small size")
+    asked = options.parse_args()
     scripts = [path for path in sorted(HERE.glob("*.py")) if path.stem not in SKIPPED]
-    text = HEAD + f"\n{machine()}\n"
+    made: dict[str, str] = {}
+    if asked.only and asked.target.exists():
+        made = parts(asked.target.read_text(encoding="utf-8"))
     for script in scripts:
         if asked.only and script.stem not in asked.only:
             continue
         print(f"== {script.name}", flush=True)
-        if rows := rows_of(script):
-            text += markdown(script.stem, rows)
+        start = time.perf_counter()
+        made[script.stem] = "\n" + "\n".join(tables(rows_of(script, asked.quick)))
+        print(f"== {script.name} took {time.perf_counter() - start:.0f} s", flush=True)
+    text = HEAD + f"\n{machine()}\n"
+    for name in sorted(name for name in made if made[name].strip()):
+        text += f"\n## `benchmarks/{name}.py`\n{made[name]}"
     asked.target.write_text(text, encoding="utf-8")
     print(f"wrote {asked.target}")
 

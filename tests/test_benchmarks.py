@@ -1,0 +1,84 @@
+"""What all benchmarks share: turns, spreads, and tables that hold every contender and case."""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
+
+
+@pytest.fixture
+def shared(monkeypatch):
+    """The modules that benchmarks import."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    import figures
+    import table
+
+    yield figures, table
+    for name in ("figures", "table"):
+        sys.modules.pop(name, None)
+
+
+def test_contenders_take_turns_after_one_call_each_that_warms_them(shared):
+    figures, _ = shared
+    calls = []
+    spent = figures.seconds({name: lambda n=name: calls.append(n) for name in "ab"}, runs=3)
+    assert "".join(calls) == "ab" * 4
+    assert {name: len(taken) for name, taken in spent.items()} == {"a": 3, "b": 3}
+
+
+def test_a_spread_is_median_mean_ninth_decile_and_maximum(shared):
+    figures, _ = shared
+    values = [5.0, 1.0, 2.0, 3.0, 100.0, 4.0, 6.0, 7.0, 8.0, 9.0, 10.0]
+    assert figures.spread(values) == pytest.approx((6.0, np.mean(values), 10.0, 100.0))
+
+
+def test_tables_hold_every_case_and_contender(shared, tmp_path, monkeypatch, capsys):
+    figures, table = shared
+    monkeypatch.setenv(figures.TABLE, str(tmp_path / "f.jsonl"))
+    for case, late in (("one", None), ("two", [1.0, 3.0])):
+        figures.figure("made", case, "s", {"ours": [1.0, 2.0], "theirs": late})
+        figures.figure("valid", case, "", {"ours": 1, "theirs": 0})
+        figures.figure("size", case, "MB", 2.5)
+    assert "made" in capsys.readouterr().out
+    rows = [json.loads(line) for line in (tmp_path / "f.jsonl").read_text().splitlines()]
+    both, size = table.tables(rows)
+    assert both.splitlines() == [
+        "| on | made [s], ours, of 2 | made [s], theirs, of 2 | valid, ours | valid, theirs |",
+        "| --- | --- | --- | --- | --- |",
+        "| one | 1.5 / 1.5 / 1.9 / 2 | not done | 1 | 0 |",
+        "| two | 1.5 / 1.5 / 1.9 / 2 | 2 / 2 / 2.8 / 3 | 1 | 0 |",
+    ]
+    assert size.splitlines()[0] == "| on | size [MB] |"
+
+
+def test_one_figure_of_several_contenders_is_a_table_s_title(shared, tmp_path, monkeypatch):
+    figures, table = shared
+    monkeypatch.setenv(figures.TABLE, str(tmp_path / "f.jsonl"))
+    figures.figure("missed by", "one", "%", {"ours": 2.0, "theirs": 1.0})
+    (made,) = table.tables([json.loads((tmp_path / "f.jsonl").read_text())])
+    assert made == (
+        "Missed by [%]:\n\n| on | ours | theirs |\n| --- | --- | --- |\n| one | 2 | 1 |\n"
+    )
+
+
+def test_what_a_document_holds_of_other_benchmarks_stays(shared):
+    _, table = shared
+    text = (
+        "# Measured\n\nA machine.\n\n## `benchmarks/a.py`\n\n| x |\n\n## `benchmarks/b.py`\n\ny\n"
+    )
+    assert table.parts(text) == {"a": "\n| x |\n", "b": "\ny\n"}
+
+
+@pytest.mark.parametrize("path", sorted(BENCHMARKS.glob("*.py")), ids=lambda path: path.stem)
+def test_every_benchmark_says_how_it_is_run_and_can_be_tried_at_a_small_size(path, shared):
+    _, table = shared
+    text = path.read_text()
+    if path.stem in ("figures", "wisdem_run"):
+        return
+    assert f"benchmarks/{path.name}" in text
+    assert "quick" in text
+    assert path.stem in table.SKIPPED or "figure(" in text

@@ -279,8 +279,8 @@ AIRFOILS = {
     "zero chord": (rows(FOIL * [0.0, 1.0]), "x spans 0, allowed is 0.01 to 10000"),
     "huge": (rows(FOIL * 1e30), "x spans 1e+30"),
     "too high": (rows(FOIL * [1.0, 1e6]), "times the chord"),
-    "nothing": (b"", "has 0 points"),
-    "prose": (b"These are not the numbers you are looking for.\n" * 20, "has 0 points"),
+    "nothing": (b"", "0 points"),
+    "prose": (b"These are not the numbers you are looking for.\n" * 20, "0 points"),
     "binary": (bytes(range(256)) * 40, "points"),
 }
 

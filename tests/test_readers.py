@@ -304,10 +304,22 @@ def test_repeated_points_are_dropped_and_said(path):
 def test_an_open_trailing_edge_stays_open(path):
     document = windio2()
     for axis in "xy":
+        del document["airfoils"][2]["coordinates"][axis][0]
         document["airfoils"][2]["coordinates"][axis].pop()
     points = read(document, path).stations[2].airfoil.coordinates
-    assert len(points) == 80
+    assert len(points) == 79
     assert np.any(points[0] != points[-1])
+
+
+def test_a_trailing_edge_that_is_listed_once_is_closed_and_said(path):
+    document = windio2()
+    for axis in "xy":
+        document["airfoils"][2]["coordinates"][axis].pop()
+    definition = read(document, path)
+    points = definition.stations[2].airfoil.coordinates
+    assert len(points) == 81
+    assert_array_equal(points[0], points[-1])
+    assert "airfoils[2].coordinates: the edge point (1, 0) is listed once" in findings(definition)
 
 
 def test_a_neighbour_that_stands_twice_is_taken_once(path):

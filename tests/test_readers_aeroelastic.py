@@ -73,7 +73,7 @@ def test_airfoil_files_of_openfast_tell_what_is_wrong(tmp_path):
     (folder / "AF02_Coords.txt").write_text("\n".join([*text[:2], "7 0", *text[3:]]))
     said = problems(path)
     assert "Polar_00.dat, NumCoords: '../../AF00_Coords.txt' is no file in Airfoils" in said
-    assert "AF01_Coords.txt: holds no coordinates" in said
+    assert "AF01_Coords.txt: holds no coordinates (0 points)" in said
     assert "AF02_Coords.txt: reference point (7, 0)" in said
 
 
@@ -278,6 +278,14 @@ def test_airfoils_that_no_section_is_as_thick_as_are_left_out(tmp_path):
     source = GOLDEN / "iea15mw" / "airfoils" / "FFA-W3-211.csv"
     (folder / "thin.csv").write_text(source.read_text())
     assert "airfoils: none is" in problems(path, airfoils=folder)
+
+
+def test_an_empty_folder_of_airfoils_is_said_to_be_empty(tmp_path):
+    (tmp_path / "none").mkdir()
+    path = openfast(tmp_path)
+    said = problems(path, airfoils=tmp_path / "none")
+    assert "holds no airfoil files (.txt, .dat, .csv, .afl)" in said
+    assert "1 to 0" not in said
 
 
 @pytest.mark.parametrize(("suffix", "mark"), [(".dat", "AeroDyn"), (".htc", "main_body")])

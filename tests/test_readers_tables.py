@@ -197,7 +197,35 @@ def test_airfoil_folders_tell_what_is_wrong(tmp_path):
     assert "line 2, file: got '../airfoils/circle.dat', must be a file of" in problems(path)
     (folder / "c.dat").write_text("nothing\n")
     index.write_text("airfoil,file\ncircle,c.dat\nnaca,c.dat\n")
-    assert "c.dat: has 0 points" in problems(path)
+    assert "c.dat: holds no coordinates (0 points)" in problems(path)
+
+
+def test_polars_beside_shapes_are_passed_over_and_reported(tmp_path):
+    path = table(tmp_path, TABLE)
+    folder = tmp_path / "airfoils"
+    (folder / "naca_polar.dat").write_text("alpha cl cd\n-10 -0.5 0.02\n0 0.4 0.01\n10 1.2 0.02\n")
+    (folder / "README.txt").write_text("Airfoils of a small blade\n")
+    (folder / "naca.txt").write_text((folder / "naca.dat").read_text())
+    placed = tmp_path / "placed.csv"
+    placed.write_text(TABLE.replace("Airfoil name", "Remark"))
+    for source in (path, placed):  # by name, and by thickness
+        made = bg.read(source)
+        assert [station.airfoil.name for station in made.stations] == ["circle", "naca"]
+        said = findings(made)
+        assert "naca_polar.dat: holds polars, not a shape; passed over" in said
+        assert "README.txt: holds no coordinates, not a shape; passed over" in said
+        assert "naca.txt: is a second file of naca; naca.dat is taken" in said
+
+
+def test_files_of_aerodyn_hold_a_reference_point(tmp_path):
+    path = table(tmp_path, TABLE)
+    file = tmp_path / "airfoils" / "naca.dat"
+    plain = bg.read(path).stations[-1].airfoil.coordinates
+    points = file.read_text().splitlines()[1:]
+    file.write_text("\n".join([f"{len(points) + 1} NumCoords", "0.25 0", *points]))
+    made = bg.read(path)
+    assert_allclose(made.stations[-1].airfoil.coordinates, plain)
+    assert "naca.dat: its first point (0.25, 0) is what polars are about" in findings(made)
 
 
 def sheets(path: Path, content: dict[str, list[list[object]]]) -> Path:

@@ -1,26 +1,61 @@
-"""Airfoil coordinate files: Selig and Lednicer formats, told apart by their content.
+"""Airfoil coordinate files: Selig, Lednicer, NuMAD and AeroDyn, told apart by their content.
 
-Selig: a title, then one loop of x and y, trailing edge -> leading edge -> trailing edge.
-Lednicer: a title, the numbers of points of both sides, then the upper and the lower side, each
-from leading to trailing edge.
+Selig: a title, then one loop of x and y, trailing edge -> leading edge -> trailing edge, or from
+the leading edge around.  Lednicer: a title, the numbers of points of both sides or none, then the
+upper and the lower side.  NuMAD: a loop within <coords>.  AeroDyn: NumCoords, the point that
+polars are about, then the loop.  What was read otherwise than it stands is said.
 """
 
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from bladegen.arrays import Array
-from bladegen.crossing import first_crossing
-from bladegen.definition import MAX_AIRFOIL_POINTS
 from bladegen.errors import FileError
+from bladegen.readers.contours import ContourError, contour, joined, sides
+from bladegen.readers.point_lines import PointLines, numbers_of, point_lines
+from bladegen.readers.text_file import number, read_lines
 
-__all__ = ["SUFFIXES", "read_airfoil", "read_folder"]
+__all__ = [
+    "SUFFIXES",
+    "AirfoilFile",
+    "of_lines",
+    "read_airfoil",
+    "read_contour",
+    "read_folder",
+    "tabulates",
+]
 
-SUFFIXES = (".dat", ".txt", ".csv", ".cor", ".pts")
+SUFFIXES = (".dat", ".txt", ".csv", ".cor", ".pts", ".afl")
 MAX_BYTES = 1_000_000
-FEWEST = 10  # points below which a file is no airfoil
-LENGTHS = 1e-2, 1e4  # of the chord: in chords, metres, per cent or millimetres
-HIGHEST = 2.0  # chords from the lowest to the highest point; a circle has 1
+FEWEST_ROWS = 4  # of a table that is one
+WIDEST = 2.0  # chords: what x of Lednicer's points does not exceed, and counts do
+ONE_WAY = 0.9  # of a table's steps along its first column
+COUNTED = re.compile(r"^\s*\S+\s+NumCoords(\s|$)")
+_POLAR_WORDS = re.compile(r"\b(alpha|aoa|angle|cl|cd)\b", re.IGNORECASE)
+_AERODYN = re.compile(r"^\s*\S+\s+(NumTabs|NumAlf)\b", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class AirfoilFile:
+    """An airfoil's contour (m, 2) in chords, trailing edge to trailing edge.
+
+    Parameters
+    ----------
+    points : (m, 2) array
+        The contour.
+    said : tuple of str
+        What was read otherwise than it stands.
+    reference : (float, float), optional
+        The point that AeroDyn's polars are about, in chords.
+    """
+
+    points: Array
+    said: tuple[str, ...]
+    reference: tuple[float, float] | None = None
 
 
 def read_airfoil(path: Path) -> Array:
@@ -31,18 +66,48 @@ def read_airfoil(path: Path) -> Array:
     FileError
         If the file cannot be read or holds no airfoil.
     """
+    return read_contour(path).points
+
+
+def read_contour(path: Path) -> AirfoilFile:
+    """Read an airfoil file.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or holds no airfoil, with the line where one is to blame.
+    """
+    return of_lines(read_lines(path, most=MAX_BYTES), str(path))
+
+
+def of_lines(lines: Sequence[str], name: str) -> AirfoilFile:
+    """Return the airfoil of a coordinate file's lines; `name` is the file's.
+
+    Raises
+    ------
+    FileError
+        If they hold no airfoil.
+    """
+    found = point_lines(lines, name)
+    said = list(found.said)
+    points, first = found.xy, None
+    if not len(points):
+        raise FileError(name, ["holds no coordinates (0 points): no line has x and y"])
+    counted = next((line for _, line in found.ahead if COUNTED.match(line)), None)
+    if counted is not None and len(points):
+        said += _miscounted(number(counted.split()[0]), len(points), "NumCoords")
+        first, points = points[0], points[1:]
+    elif found.ahead[1:]:
+        _, line = found.ahead[-1]
+        values = numbers_of(line) or []
+        if len(values) == 1:
+            said += _miscounted(values[0], len(points), "the line ahead of them")
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise FileError(str(path), [f"is larger than {MAX_BYTES} bytes"])
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError as error:
-        raise FileError(str(path), [f"cannot be read: {error.strerror}"]) from None
-    rows = [pair for pair in map(_pair, lines) if pair is not None]
-    points = _loop(np.array(rows, dtype=np.float64).reshape(-1, 2))
-    problem = _problem(points)
-    if problem:
-        raise FileError(str(path), [problem])
-    return points
+        loop = contour(_loop(points, found, name), any_unit=True)
+    except ContourError as error:
+        raise FileError(name, [str(error)]) from None
+    about = None if first is None else (loop.scale * first - loop.shift).tolist()
+    return AirfoilFile(loop.points, (*said, *loop.said), about and (about[0], about[1]))
 
 
 def read_folder(folder: Path) -> tuple[dict[str, Array], dict[str, str]]:
@@ -73,46 +138,52 @@ def read_folder(folder: Path) -> tuple[dict[str, Array], dict[str, str]]:
     return airfoils, unusable
 
 
-def _pair(line: str) -> tuple[float, float] | None:
-    """Return a line's two numbers, or None if it holds anything else."""
-    words = line.replace(",", " ").replace(";", " ").split()
-    try:
-        numbers = [float(word) for word in words]
-    except ValueError:
-        return None
-    return (numbers[0], numbers[1]) if len(numbers) == 2 else None
+def tabulates(lines: Sequence[str]) -> str | None:
+    """Say what a file holds that is no contour though it may stand beside some: polars, a text.
+
+    Rows of three and more numbers of which the first runs one way are a table over angles; no
+    contour's x does, which runs to the nose and back.
+    """
+    if _AERODYN.search("\n".join(lines)):
+        return "polars"
+    values = [numbers for line in lines if (numbers := numbers_of(line)) is not None]
+    rows = [row for row in values if len(row) > 1]
+    if not rows:
+        return None if values else "no coordinates"
+    width = max({len(row) for row in rows}, key=[len(row) for row in rows].count)
+    first = np.array([row[0] for row in rows if len(row) == width])
+    steps = np.sign(np.diff(first))
+    one_way = len(first) >= FEWEST_ROWS - 1 and abs(steps.sum()) >= ONE_WAY * len(steps)
+    named = any(_POLAR_WORDS.search(line) for line in lines if numbers_of(line) is None)
+    if one_way and (named or width > 2):
+        return "polars" if named else f"a table of {width} columns"
+    return None
 
 
-def _loop(rows: Array) -> Array:
-    """Return rows as one loop, Lednicer's two sides joined at the leading edge."""
-    if len(rows) < 3 or not np.all(np.isfinite(rows[0])):
-        return rows
-    counts = rows[0]
+def _miscounted(count: float | None, points: int, name: str) -> list[str]:
+    """Say that a file counts other points than it holds."""
+    if count is None or count != round(count) or count == points:
+        return []
+    return [f"{name} counts {count:g} points, the file holds {points}; all are taken"]
+
+
+def _loop(points: Array, found: PointLines, name: str) -> Array:
+    """Return points as one loop, two sides joined at the leading edge."""
+    if len(points) < 4:
+        return points
+    counts, rest = points[0], points[1:]
     whole = bool(np.all(counts == np.round(counts)) and np.all(counts > 1))
-    if not whole or int(counts.sum()) != len(rows) - 1:
-        return rows
-    upper, lower = rows[1 : 1 + int(counts[0])], rows[1 + int(counts[0]) :]
-    joined = bool(np.allclose(upper[0], lower[0], rtol=0, atol=1e-9))
-    return np.concatenate([upper[::-1], lower[1:] if joined else lower])
-
-
-def _problem(points: Array) -> str | None:
-    """Say what keeps points from being an airfoil."""
-    if not FEWEST <= len(points) <= MAX_AIRFOIL_POINTS:
-        return f"has {len(points)} points, allowed are {FEWEST} to {MAX_AIRFOIL_POINTS}"
-    if not np.isfinite(points).all():
-        return "has a coordinate that is not finite"
-    low, high = points.min(axis=0), points.max(axis=0)
-    length, height = (high - low).tolist()
-    if not LENGTHS[0] <= length <= LENGTHS[1]:
-        return f"x spans {length:g}, allowed is {LENGTHS[0]:g} to {LENGTHS[1]:g}"
-    crossing = None
-    if height > HIGHEST * length:
-        fault = f"y spans {height:g}, allowed is up to {HIGHEST:g} times the chord of {length:g}"
-    elif min(points[[0, -1], 0]) < low[0] + 0.9 * length:
-        fault = "does not run from trailing edge to trailing edge"
-    else:
-        crossing, fault = first_crossing(points / length), None
-    if crossing is not None:
-        return f"crosses itself between points {crossing[0]} and {crossing[1]}"
-    return fault
+    if not whole:
+        return sides(points)
+    upper = int(counts[0]) if counts[0] < len(points) else len(points)
+    if int(min(counts.sum(), 1e9)) == len(rest):
+        return joined(rest[:upper], rest[upper:])
+    if np.ptp(rest[:, 0]) <= WIDEST < counts.min():
+        raise FileError(
+            name,
+            [
+                f"line {found.at[0]}: counts {counts[0]:g} and {counts[1]:g} points of the sides, "
+                f"{counts.sum():g} together; the file holds {len(rest)}"
+            ],
+        )
+    return sides(points)

@@ -1,21 +1,24 @@
 """Airfoil shapes that stand in files of their own beside a blade file.
 
-A folder of coordinate files (Selig or Lednicer), with or without `index.csv` that bladegen
+A folder of coordinate files (`readers.airfoil_files`), with or without `index.csv` that bladegen
 writes: its columns are airfoil, file, relative_thickness and, where the blade file cannot say it,
-span_fraction.  Without it an airfoil is known by its file's name, its thickness by its coordinates.
+span_fraction.  Without it an airfoil is known by its file's name, its thickness by its coordinates;
+polars and other files that stand beside shapes are passed over, and reported.
 """
 
 import csv
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from bladegen.definition import Airfoil, Station
-from bladegen.errors import FileError
+from bladegen.errors import FileError, Finding
 from bladegen.files import safe_stem
-from bladegen.readers.airfoil_files import SUFFIXES, read_airfoil
-from bladegen.readers.airfoils import airfoil, thickness
-from bladegen.readers.document import Node, Notes
+from bladegen.readers.airfoil_files import MAX_BYTES, SUFFIXES, read_contour, tabulates
+from bladegen.readers.airfoils import of_file
+from bladegen.readers.contours import THICKNESS, thickness
+from bladegen.readers.document import Notes
 from bladegen.readers.text_file import natural, number, read_lines, referred
 
 __all__ = [
@@ -135,24 +138,29 @@ def placed_airfoils(folder: Path, notes: Notes) -> tuple[Station, ...]:
 
 def _airfoil(name: str, entry: _Entry, notes: Notes) -> Airfoil | None:
     """Read one airfoil's file."""
+    file = entry.path.name
     try:
-        points = read_airfoil(entry.path)
+        read = read_contour(entry.path)
     except FileError as error:
-        notes.problems += [f"{entry.path.name}: {problem}" for problem in error.problems]
+        notes.problems += [f"{file}: {problem}" for problem in error.problems]
         return None
-    value: dict[str, object] = {
-        "coordinates": {"x": points[:, 0].tolist(), "y": points[:, 1].tolist()}
-    }
-    if entry.thickness is not None:
-        value["relative_thickness"] = entry.thickness
-    return airfoil(name, Node(value, entry.path.name, notes), "relative_thickness")
+    if entry.thickness is not None and not THICKNESS.holds(entry.thickness):
+        notes.problems.append(
+            f"{INDEX}, {name}, relative_thickness: got {entry.thickness:g}, allowed is {THICKNESS}"
+        )
+        return None
+    if read.reference is not None:
+        x, y = read.reference
+        said = f"its first point ({x:g}, {y:g}) is what polars are about (NumCoords); not a point"
+        notes.findings.append(Finding(file, said))
+    return of_file(name, file, read, entry.thickness, notes)
 
 
 def _entries(folder: Path, notes: Notes) -> list[_Entry]:
     """Return what a folder holds, by its index or by its files' names."""
     index = folder / INDEX
     if not index.is_file():
-        return [_Entry(path.stem, path) for path in files_of(folder)]
+        return _by_name(folder, notes)
     entries = []
     rows = csv.DictReader(line for line in read_lines(index) if not line.startswith("#"))
     for row in rows:
@@ -166,6 +174,24 @@ def _entries(folder: Path, notes: Notes) -> list[_Entry]:
             continue
         entries.append(_Entry(name, path, number(thick), number(eta)))
     return entries
+
+
+def _by_name(folder: Path, notes: Notes) -> list[_Entry]:
+    """Return a folder's shapes by the names of their files; what else it holds is said."""
+    found: dict[str, _Entry] = {}
+    for path in files_of(folder):
+        other = None
+        with suppress(FileError):  # what cannot be read is a problem if a blade needs it
+            other = tabulates(read_lines(path, most=MAX_BYTES))
+        if other is not None:
+            said = f"holds {other}, not a shape; passed over"
+        elif path.stem in found:
+            said = f"is a second file of {path.stem}; {found[path.stem].path.name} is taken"
+        else:
+            found[path.stem] = _Entry(path.stem, path)
+            continue
+        notes.findings.append(Finding(path.name, said))
+    return list(found.values())
 
 
 def _plain(name: str) -> str:

@@ -18,8 +18,8 @@ from bladegen.definition import BladeDefinition, Distribution
 from bladegen.errors import Finding
 from bladegen.readers import workbook
 from bladegen.readers.airfoil_folder import beside, shapes
-from bladegen.readers.airfoils import thickest
 from bladegen.readers.assembly import Library, Schedule, assemble, span_fractions
+from bladegen.readers.contours import thickest
 from bladegen.readers.document import Notes, Range
 from bladegen.readers.table import Column, Rows, values_of
 

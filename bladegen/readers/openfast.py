@@ -21,7 +21,7 @@ from bladegen.errors import Finding
 from bladegen.readers.airfoil_folder import beside
 from bladegen.readers.airfoil_info import COLUMNS as COLUMNS_OF_TABLES
 from bladegen.readers.document import Notes, Range
-from bladegen.readers.openfast_airfoils import Shape, files_in_order, shape
+from bladegen.readers.openfast_airfoils import FILES, Shape, files_in_order, shape
 from bladegen.readers.openfast_model import (
     TURBINE,
     Main,
@@ -184,6 +184,11 @@ def _shapes(
         if folder is None:
             return None
         files = files_in_order(folder)
+    if not files:
+        notes.problems.append(
+            f"BlAFID: {given or 'the folder'} holds no airfoil files ({', '.join(FILES)})"
+        )
+        return None
     last = int(ids.max())
     if last > len(files):
         where = given or (files[0].parent.name if files else "the folder")

@@ -8,20 +8,22 @@ import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from bladegen.definition import Airfoil
 from bladegen.errors import FileError
+from bladegen.readers.airfoil_files import of_lines
 from bladegen.readers.airfoil_folder import files_of
 from bladegen.readers.airfoil_info import COLUMNS, Columns, holds_tables, polars
-from bladegen.readers.airfoils import airfoil
-from bladegen.readers.document import Node, Notes, Range
-from bladegen.readers.text_file import head, number, read_lines, referred
+from bladegen.readers.airfoils import of_file
+from bladegen.readers.document import Notes, Range
+from bladegen.readers.text_file import head, read_lines, referred
 
-__all__ = ["Shape", "files_in_order", "shape"]
+__all__ = ["FILES", "Shape", "files_in_order", "shape"]
+
+FILES = (".txt", ".dat", ".csv", ".afl")
 
 REFERENCE = Range(-0.5, 1.5, "of the chord")
 QUARTER = 0.25
+_TABLES = re.compile(r"^\s*\S+\s+NumTabs\b")
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ def files_in_order(folder: Path) -> list[Path]:
 
     Those with polars where there is one for each file of coordinates, else the coordinates.
     """
-    files = files_of(folder, (".txt", ".dat", ".csv"))
+    files = files_of(folder, FILES)
     coordinates = [path for path in files if "coord" in path.name.lower()]
     others = [path for path in files if path not in coordinates]
     tables = [path for path in others if coordinates and holds_tables(head(path))]
@@ -73,25 +75,27 @@ def shape(path: Path, notes: Notes, columns: Columns = COLUMNS) -> Shape | None:
     except FileError as error:
         notes.problems += [f"{path.name}: {problem}" for problem in error.problems]
         return None
-    rows = [tuple(map(number, line.split())) for line in lines if not line.lstrip().startswith("!")]
-    pairs = [row for row in rows if len(row) == 2 and None not in row]
-    counted = any(re.search(r"\sNumCoords(\s|$)", line) for line in lines)
-    if not pairs:
-        notes.problems.append(f"{path.name}: holds no coordinates (NumCoords and rows of x/c, y/c)")
+    try:
+        read = of_lines(_shape_lines(lines), path.name)
+    except FileError as error:
+        notes.problems += [f"{path.name}: {problem}" for problem in error.problems]
         return None
-    points = np.array(pairs, dtype=np.float64)
-    x, y = (points[0].tolist()) if counted else (QUARTER, 0.0)
-    points = points[1:] if counted else points
+    x, y = read.reference or (QUARTER, 0.0)
     if not REFERENCE.holds([x, y]).all():
         notes.problems.append(
             f"{path.name}: reference point ({x:g}, {y:g}), allowed is {REFERENCE}"
         )
         return None
-    value = {"coordinates": {"x": points[:, 0].tolist(), "y": points[:, 1].tolist()}}
-    made = airfoil(_name(lines, path), Node(value, path.name, notes), "relative_thickness")
-    if made is not None and own:
+    made = of_file(_name(lines, path), path.name, read, None, notes)
+    if own:
         made = replace(made, polars=own, aerodynamic_center=x)
-    return None if made is None else Shape(made, x, y)
+    return Shape(made, x, y)
+
+
+def _shape_lines(lines: list[str]) -> list[str]:
+    """Return a file's lines without the tables of polars behind its coordinates."""
+    end = next((k for k, line in enumerate(lines) if _TABLES.match(line)), len(lines))
+    return lines[:end]
 
 
 def _name(lines: list[str], path: Path) -> str:

@@ -22,8 +22,9 @@ from bladegen.definition import Airfoil, BladeDefinition, Rotor
 from bladegen.errors import Finding
 from bladegen.readers import workbook
 from bladegen.readers.airfoil_folder import beside, shapes, thick_airfoils
-from bladegen.readers.airfoils import airfoil, thickness
+from bladegen.readers.airfoils import airfoil
 from bladegen.readers.assembly import Library, Schedule, assemble, span_fractions
+from bladegen.readers.contours import thickness
 from bladegen.readers.document import Node, Notes, Range
 from bladegen.readers.table import Block, Cell, Rows, blocks, values_of
 from bladegen.readers.text_file import head, number, read_lines

@@ -32,6 +32,9 @@ MAX_BYTES = 16 * 2**20  # the largest blade or airfoil file of these tools has 0
 HEAD_BYTES = 8192
 SHOWN = 5  # wrong entries of one column that are named one by one
 _UTF_16 = codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE
+_NUMBER = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))(?:[eEdDqQ]([-+]?[0-9]+))?")
+_BARE = re.compile(r"([-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+))([-+][0-9]{3})")
+_NOT_FINITE = ("nan", "inf", "infinity")
 _DIGITS = re.compile(r"(\d+)")
 
 
@@ -107,11 +110,14 @@ def natural(path: Path) -> list[str | int]:
 
 
 def number(text: str) -> float | None:
-    """Return the number that a word is, Fortran's 1.0D+00 included; None if it is none."""
-    try:
-        return float(re.sub(r"[dD](?=[-+]?\d+$)", "e", text))
-    except ValueError:
-        return None
+    """Return the number that a word is, Fortran's 1.0D+00 and 1.0-103 included; None if it is none.
+
+    Fortran drops the letter of exponents of three digits; its numbers always have a point.
+    """
+    match = _NUMBER.fullmatch(text) or _BARE.fullmatch(text)
+    if match is not None:
+        return float(f"{match[1]}e{match[2] or 0}")
+    return float(text) if text.lstrip("+-").lower() in _NOT_FINITE else None
 
 
 def numbers(

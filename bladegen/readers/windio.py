@@ -20,7 +20,8 @@ from bladegen.definition import (
     stations_by_thickness,
 )
 from bladegen.errors import DefinitionError
-from bladegen.readers.airfoils import airfoils, thickness
+from bladegen.readers.airfoils import airfoils
+from bladegen.readers.contours import thickness
 from bladegen.readers.document import Node, Range
 
 __all__ = ["Entry", "Layout", "read", "recognises"]

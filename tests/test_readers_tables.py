@@ -200,6 +200,72 @@ def test_airfoil_folders_tell_what_is_wrong(tmp_path):
     assert "c.dat: holds no coordinates (0 points)" in problems(path)
 
 
+UNITS_BELOW = """Span,Chord,Twist,Pitch Axis,PreBend,t/c,Airfoil,Mass
+UNITS
+0,1000,12,50,0,100,circle,3
+10,1500,6,40,-20,,,2
+20,500,0,30,-100,18,naca,1
+"""
+
+
+@pytest.mark.parametrize(
+    "units",
+    [
+        "[m],[mm],[deg],[% chord],[mm],[%],[-],[kg/m]",
+        "(m),(mm),(deg),(%c),(mm),(%),(-),(kg/m)",
+        "m,mm,°,% of chord,mm,%,-,kg/m",
+        "m,mm,degrees,%,mm,percent,,kg/m",
+        "[ m ],[MM],[Deg.],[%],[mm],[%],,",
+    ],
+)
+@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
+def test_units_stand_in_a_row_below_the_names(tmp_path, units, delimiter):
+    text = UNITS_BELOW.replace("UNITS", units).replace(",", delimiter)
+    made = bg.read(table(tmp_path, text))
+    assert_allclose(made.axis.z.values, [0, 10, 20])
+    assert_allclose(made.chord.values, [1.0, 1.5, 0.5], rtol=1e-15)
+    assert_allclose(np.degrees(made.twist.values), [12, 6, 0])
+    assert_allclose(made.pitch_axis.values, [0.5, 0.4, 0.3], rtol=1e-15)
+    assert_allclose(made.axis.x.values, [0, -0.02, -0.1], rtol=1e-15)
+    assert_allclose(made.relative_thickness.values, [1.0, 0.18])
+    assert "names no unit" not in findings(made)
+
+
+@pytest.mark.parametrize(
+    ("title", "factor"),
+    [
+        ("chord_mm", 1e-3),
+        ("Chord [mm]", 1e-3),
+        ("Chord (cm)", 1e-2),
+        ("chord in mm", 1e-3),
+        ("Chord, ft", 0.3048),
+        ("Chord [in]", 0.0254),
+        ("Chord [metres]", 1.0),
+    ],
+)
+def test_units_of_a_name(tmp_path, title, factor):
+    rows = [f"z_m;{title};twist_deg;t/c %;airfoil", "0;10;2;100;circle", "9;5;0;18;naca"]
+    made = bg.read(table(tmp_path, "\n".join(rows)))
+    assert_allclose(made.chord.values, [10 * factor, 5 * factor], rtol=1e-15)
+    assert_allclose(made.relative_thickness.values, [1.0, 0.18], rtol=1e-15)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("blank", ["", ";;;;", "   "])
+def test_tables_of_spreadsheets_are_read(tmp_path, encoding, blank):
+    """Semicolons, decimal commas, a title, blank rows between rows, and a sum behind them."""
+    lines = ["Mein Blatt", blank, "Radius [m];Chord [m];Twist [deg];t/c [%];Airfoil"]
+    for row in ("1,5;1,0;1,2D+01;100;circle", "11,5;1,5;6;50;", "21,5;0,5;0;18;naca"):
+        lines += [blank, row]
+    path = table(tmp_path, "")
+    path.write_text("\r\n".join([*lines, blank, "0;7;8;9;sum", ""]), encoding=encoding)
+    made = bg.read(path)
+    assert_allclose(made.axis.z.values, [0, 10, 20])
+    assert_allclose(made.chord.values, [1.0, 1.5, 0.5])
+    assert_allclose(np.degrees(made.twist.values), [12, 6, 0])
+    assert "1 rows behind a table passed over" in findings(made)
+
+
 def test_polars_beside_shapes_are_passed_over_and_reported(tmp_path):
     path = table(tmp_path, TABLE)
     folder = tmp_path / "airfoils"

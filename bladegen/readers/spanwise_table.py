@@ -27,7 +27,7 @@ from bladegen.readers.assembly import Library, Schedule, assemble, span_fraction
 from bladegen.readers.contours import thickness
 from bladegen.readers.document import Node, Notes, Range
 from bladegen.readers.table import Block, Cell, Rows, blocks, values_of
-from bladegen.readers.text_file import head, number, read_lines
+from bladegen.readers.text_file import delimiter_of, head, number, read_lines
 
 __all__ = ["AIRFOIL", "FACTS", "GEOMETRY", "MARK", "SUFFIXES", "read", "recognises"]
 
@@ -101,10 +101,11 @@ def _csv(path: Path, notes: Notes) -> tuple[dict[str, str], Rows]:
     for line in lines:
         name, mark, value = line.lstrip("# ").partition(":")
         if line.startswith("#") and mark:
-            facts[name.strip()] = value.strip().strip(",;")
+            facts[name.strip()] = _decimal(value.strip().strip(",;\t "))
     table = [(k + 1, line) for k, line in enumerate(lines) if not line.startswith("#")]
-    plain = next((line for _, line in table if line.strip()), "")
-    delimiter = max((",", ";", "\t"), key=plain.count)
+    plain = [line for _, line in table if line.strip()]
+    header = next((k for k, line in enumerate(plain) if "chord" in line.lower()), 0)
+    delimiter = delimiter_of("\n".join(plain[header : header + 1]))
     parsed = csv.reader((line for _, line in table), delimiter=delimiter)
     rows: Rows = []
     commas = 0

@@ -1,8 +1,9 @@
 """Spanwise tables: rows of cells, whatever file they stand in, to named columns in SI units.
 
 A header is a row with at least two known names.  Names are told by many spellings, units by
-brackets or by an ending: ``Chord [m]``, ``chord_m``, ``Twist (deg)``, ``r/R``.  What a header
-leaves open is taken as usual, and said.
+brackets or by an ending: ``Chord [m]``, ``chord_m``, ``Twist (deg)``, ``r/R``, or by a row of
+units below the names.  What a header leaves open is taken as usual, and said.  Blank rows within a
+table are of no meaning.
 """
 
 import math
@@ -16,20 +17,29 @@ import numpy as np
 from bladegen.arrays import Array
 from bladegen.errors import Finding
 from bladegen.readers.document import Notes, Range
+from bladegen.readers.text_file import number
 
 __all__ = ["Block", "Cell", "Column", "Rows", "blocks", "values_of"]
 
 Cell = str | float | None
 Rows = list[tuple[int, Sequence[Cell]]]
 
-LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2}
+LENGTHS = {
+    **dict.fromkeys(("m", "meter", "meters", "metre", "metres"), 1.0),
+    **dict.fromkeys(("mm", "millimeter", "millimeters", "millimetre", "millimetres"), 1e-3),
+    **dict.fromkeys(("cm", "centimeter", "centimeters", "centimetre", "centimetres"), 1e-2),
+    **dict.fromkeys(("in", "inch", "inches"), 0.0254),
+    **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
+}
 ANGLES = {
-    **dict.fromkeys(("deg", "degree", "degrees", "°"), math.pi / 180.0),
+    **dict.fromkeys(("deg", "degs", "degree", "degrees", "°"), math.pi / 180.0),
     **dict.fromkeys(("rad", "radian", "radians"), 1.0),
 }
 RATIOS = {
-    **dict.fromkeys(("-", "1", "x/c", "t/c", "r/r", "z/l", "frac", "fraction", "of chord"), 1.0),
-    **dict.fromkeys(("%", "percent", "pct", "%chord"), 0.01),
+    **dict.fromkeys(("-", "--", "1", "x/c", "t/c", "r/r", "z/l", "frac", "fraction"), 1.0),
+    **dict.fromkeys(("of chord", "chord", "chords", "c", "/c"), 1.0),
+    **dict.fromkeys(("%", "percent", "per cent", "pct"), 0.01),
+    **dict.fromkeys(("% chord", "%chord", "% of chord", "%c", "% c", "percent chord"), 0.01),
 }
 SHOWN = 5  # wrong cells of one column that are named one by one
 
@@ -119,6 +129,7 @@ FIELDS = (
 )
 TEXT_NAMES = ("airfoil", "airfoil name", "airfoils", "profile", "airfoil id")
 UNITS = {*LENGTHS, *ANGLES, *RATIOS}
+ENDINGS = {*LENGTHS, *ANGLES, "frac", "fraction", "percent", "pct"} - {"in"}  # of a name
 _BRACKETS = re.compile(r"^(.*?)[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 
 
@@ -147,27 +158,60 @@ class Block:
 
 
 def blocks(rows: Rows, notes: Notes) -> list[Block]:
-    """Find the tables in rows of cells; each starts with a header and ends with a blank row."""
+    """Find the tables in rows of cells; each starts with a header.
+
+    It ends with the next header, or with a blank row behind which its span does not go on.
+    """
     found: list[Block] = []
-    header: dict[int, tuple[str, str, float, Range]] = {}
+    header: _Header = {}
     taken: list[tuple[int, Sequence[Cell]]] = []
+    left: list[int] = []
+    units_at, blank = 0, False
 
     def close() -> None:
         if header and taken:
             found.append(_block(header, taken))
 
-    for at, cells in rows:
-        known = _header(cells, notes, at)
-        if len(known) >= 2:
+    for place, (at, cells) in enumerate(rows):
+        if at == units_at:
+            continue
+        below = next((row for row in rows[place + 1 : place + 4] if not _empty(row[1])), None)
+        known = _header(cells, below, notes, at)
+        if known.columns:
             close()
-            header, taken = known, []
-        elif all(_blank(cell) for cell in cells):
+            header, taken, blank = known.columns, [], False
+            units_at = known.units_at
+        elif _empty(cells):
+            blank = True
+        elif header and blank and not _goes_on(header, taken, cells):
             close()
             header, taken = {}, []
+            left.append(at)
         elif header:
             taken.append((at, cells))
+            blank = False
+        elif found and sum(_number(cell) is not None for cell in cells) > 1:
+            left.append(at)
     close()
+    if left and found:
+        notes.findings.append(
+            Finding(f"row {left[0]}", f"{len(left)} rows behind a table passed over")
+        )
     return found
+
+
+def _goes_on(header: "_Header", taken: list[Any], cells: Sequence[Cell]) -> bool:
+    """Tell whether a row behind a blank one is the table's next: its span is farther out."""
+    for k, (key, *_) in header.items():
+        if key in ("eta", "z") and k < len(cells):
+            last = [_number(row[k]) for _, row in taken[-1:] if k < len(row)]
+            here = _number(cells[k])
+            return here is not None and (not last or last[0] is None or here > last[0])
+    return False
+
+
+def _empty(cells: Sequence[Cell]) -> bool:
+    return all(_blank(cell) for cell in cells)
 
 
 def values_of(column: Column, notes: Notes) -> Array | None:
@@ -177,8 +221,8 @@ def values_of(column: Column, notes: Notes) -> Array | None:
     for i, cell in enumerate(column.cells):
         if _blank(cell):
             continue
-        number = _number(cell)
-        values[i] = math.nan if number is None else column.factor * number
+        value = _number(cell)
+        values[i] = math.nan if value is None else column.factor * value
         if not column.allowed.holds(values[i]):
             wrong.append(i)
     for i in wrong[:SHOWN]:
@@ -192,7 +236,18 @@ def values_of(column: Column, notes: Notes) -> Array | None:
     return None if wrong else values
 
 
-def _block(header: dict[int, tuple[str, str, float, Range]], taken: list[Any]) -> Block:
+_Header = dict[int, tuple[str, str, float, Range]]
+
+
+@dataclass(frozen=True)
+class _Named:
+    """What the columns of a header hold, and the row of its units if they stand below."""
+
+    columns: _Header
+    units_at: int = 0
+
+
+def _block(header: _Header, taken: list[Any]) -> Block:
     rows = tuple(at for at, _ in taken)
     columns = {}
     for k, (key, title, factor, allowed) in header.items():
@@ -202,13 +257,17 @@ def _block(header: dict[int, tuple[str, str, float, Range]], taken: list[Any]) -
 
 
 def _header(
-    cells: Sequence[Cell], notes: Notes, at: int
-) -> dict[int, tuple[str, str, float, Range]]:
-    """Return what each column of a header row holds; empty if the row is no header."""
+    cells: Sequence[Cell], below: tuple[int, Sequence[Cell]] | None, notes: Notes, at: int
+) -> _Named:
+    """Return what each column of a header row holds; none if the row is no header."""
     texts = [cell if isinstance(cell, str) else "" for cell in cells]
-    known: dict[int, tuple[str, str, float, Range]] = {}
+    if sum(_named(title, [], at) is not None for title in texts) < 2 and not _units(below):
+        return _Named({})
+    units = _units(below)
+    titles = [_with_unit(title, units.get(k)) for k, title in enumerate(texts)]
+    known: _Header = {}
     said: list[Finding] = []
-    for k, title in enumerate(texts):
+    for k, title in enumerate(titles):
         found = _named(title, said, at)
         if found is None:
             continue
@@ -216,23 +275,48 @@ def _header(
             said.append(Finding(f"row {at}", f"{title!r} stands twice; the first one is taken"))
             continue
         known[k] = found
-    if len(known) >= 2:
-        unknown = [title for k, title in enumerate(texts) if title.strip() and k not in known]
-        if unknown:
-            said.append(
-                Finding(f"row {at}", f"columns passed over: {', '.join(unknown[:8])[:200]}")
-            )
-        notes.findings += said
-    return known
+    if len(known) < 2:
+        return _Named({})
+    unknown = [title for k, title in enumerate(titles) if title.strip() and k not in known]
+    if unknown:
+        said.append(Finding(f"row {at}", f"columns passed over: {', '.join(unknown[:8])[:200]}"))
+    notes.findings += said
+    return _Named(known, below[0] if units and below else 0)
+
+
+def _units(row: tuple[int, Sequence[Cell]] | None) -> dict[int, str]:
+    """Return the units of a row that holds some and no number; none of any other row."""
+    cells = [] if row is None else row[1]
+    if any(_number(cell) is not None for cell in cells):
+        return {}
+    found = {}
+    for k, cell in enumerate(cells):
+        unit = cell.strip().strip("[]()").strip(" .").lower() if isinstance(cell, str) else ""
+        if unit:
+            found[k] = unit
+    known = sum(unit in UNITS for unit in found.values())
+    return found if 2 * known >= len(found) else {}
+
+
+def _with_unit(title: str, unit: str | None) -> str:
+    """Return a title with the unit that stands below it, if it has none of its own."""
+    if unit is None or not title.strip() or _BRACKETS.match(title):
+        return title
+    return f"{title.strip()} [{unit}]"
 
 
 def _named(title: str, said: list[Finding], at: int) -> tuple[str, str, float, Range] | None:
     """Tell what a column's title stands for."""
     match = _BRACKETS.match(title)
     name, unit = (match[1], match[2].lower()) if match else (title, None)
+    if unit is None and name.rstrip().endswith(("%", "°")):
+        unit = name.rstrip()[-1]
     words = re.sub(r"[^a-z0-9]+", " ", name.lower()).split()
-    if unit is None and len(words) > 1 and words[-1] in UNITS and words[-1] != "1":
+    if unit is None and len(words) > 1 and words[-1] in ENDINGS:
         unit, words = words[-1], words[:-1]
+    if len(words) > 1 and words[-1] == "in":  # chord in mm
+        words = words[:-1]
+    unit = unit if unit is None else unit.rstrip(".")
     plain = " ".join(words)
     if plain in TEXT_NAMES:
         return "airfoil", title.strip(), 1.0, Range(0.0, 0.0)
@@ -259,14 +343,11 @@ def _blank(cell: Cell) -> bool:
 
 
 def _number(cell: Cell) -> float | None:
-    if isinstance(cell, bool):
+    if cell is None or isinstance(cell, bool):
         return None
     if isinstance(cell, int | float):
         return float(cell)
-    try:
-        return float(str(cell).strip())
-    except ValueError:
-        return None
+    return number(str(cell).strip())
 
 
 def _shown(cell: Cell) -> str:

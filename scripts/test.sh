@@ -16,7 +16,8 @@ state() {
 }
 
 before="$(state)"
-.venv/bin/python -m pytest -n "${JOBS:-2}" --cov --cov-report= "$@"
+# worksteal keeps a module's tests, and what they share, in one process as far as it can
+.venv/bin/python -m pytest -n "${JOBS:-2}" --dist worksteal --cov --cov-report= "$@"
 after="$(state)"
 if [ "$before" != "$after" ]; then
     printf 'test: the checkout was changed while the tests ran:\n' >&2

@@ -1,5 +1,3 @@
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -15,10 +13,8 @@ def test_the_gallery_takes_in_every_example():
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_examples_run_and_write_files(path, tmp_path):
-    done = subprocess.run(
-        [sys.executable, str(path)], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("wrote")
+def test_examples_run_and_write_files(command, path, tmp_path):
+    done = command(script=path, folder=tmp_path)
+    assert done["status"] == 0, done["err"]
+    assert done["out"].startswith("wrote")
     assert any(entry.stat().st_size > 1000 for entry in tmp_path.rglob("*") if entry.is_file())

@@ -5,15 +5,11 @@ its final name is whole, and what is said is one line.
 """
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import zygote
 
 import bladegen as bg
 
@@ -33,41 +29,6 @@ FORMATS = (
     "cgns",
     "vtu",
 )
-
-
-class Commands:
-    """The zygote's other end."""
-
-    def __init__(self) -> None:
-        environment = os.environ | {"OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
-        self.process = subprocess.Popen(
-            [sys.executable, zygote.__file__],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-            env=environment,
-        )
-        assert self.process.stdout is not None
-        assert self.process.stdout.readline() == "ready\n"
-
-    def together(self, *jobs: dict[str, Any]) -> list[dict[str, Any]]:
-        """Run jobs at once."""
-        assert self.process.stdin is not None
-        assert self.process.stdout is not None
-        self.process.stdin.write(json.dumps(jobs, default=str) + "\n")
-        self.process.stdin.flush()
-        return json.loads(self.process.stdout.readline())
-
-    def __call__(self, *args: Any, **how: Any) -> dict[str, Any]:
-        return self.together({"args": list(map(str, args)), **how})[0]
-
-
-@pytest.fixture(scope="module")
-def command():
-    commands = Commands()
-    yield commands
-    commands.process.stdin.close()
-    assert commands.process.wait(60) == 0
 
 
 @pytest.fixture(scope="module")

@@ -3,13 +3,18 @@
 Real commands in real processes, without the seconds that importing OCCT and VTK takes each time.
 It reads one request a line from stdin, a JSON list of jobs that run at once, and answers a list:
 
-    {"args": [...]}   what follows `bladegen` on the command line, and of these what is wanted:
+    {"args": [...]}   what follows `bladegen` on the command line, or what follows a script's name
+    "script": path    that runs instead of the command, and of these what is wanted:
+    "folder": path    where it runs
     "hidden": [...]   libraries that cannot be imported
     "limit": bytes    no file may grow beyond it, as on a full disk
     "plain": true     without root's right to write where the mode forbids it
     "kill": seconds   kill -9 after so long
 
-    [{"status": exit code or -9, "err": what it wrote to stderr, "seconds": ...}, ...]
+    [{"status": exit code or -9, "out": what it wrote to stdout, "err": to stderr,
+      "seconds": ...}, ...]
+
+`Commands` is the other end: a call with the arguments runs one job.
 """
 
 import ctypes
@@ -17,10 +22,12 @@ import importlib
 import json
 import os
 import resource
+import runpy
 import signal
+import subprocess
 import sys
 import time
-from typing import Any
+from typing import Any, Self
 
 SLOW = (
     "OCP.STEPControl",
@@ -54,12 +61,15 @@ def hide(library: str) -> None:
     sys.modules[library] = None  # type: ignore[assignment]
 
 
-def run(job: dict[str, Any], error: int) -> None:
+def run(job: dict[str, Any], out: int, error: int) -> None:
     """Be the command: never returns."""
     os.setsid()
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    os.dup2(out, 1)
     os.dup2(error, 2)
-    sys.argv = ["bladegen", *job["args"]]
+    script = job.get("script")
+    sys.argv = [script or "bladegen", *job["args"]]
+    if "folder" in job:
+        os.chdir(job["folder"])
     for library in job.get("hidden", ()):
         hide(library)
     if "limit" in job:
@@ -70,7 +80,7 @@ def run(job: dict[str, Any], error: int) -> None:
 
     status = 70
     try:
-        main()
+        runpy.run_path(script, run_name="__main__") if script else main()
         status = 0
     except SystemExit as end:
         status = end.code if isinstance(end.code, int) else 0 if end.code is None else 1
@@ -88,27 +98,32 @@ def answered(jobs: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Run jobs at once and say how each ended."""
     running = []
     for job in jobs:
-        stream = os.fdopen(os.memfd_create("stderr"), "w+b")
+        out, error = (os.fdopen(os.memfd_create(name), "w+b") for name in ("stdout", "stderr"))
         start, process = time.monotonic(), os.fork()
         if process == 0:
-            run(job, stream.fileno())
-        running.append((job, process, start, stream))
+            run(job, out.fileno(), error.fileno())
+        running.append((job, process, start, out, error))
     answers = []
-    for job, process, start, stream in running:
+    for job, process, start, out, error in running:
         if "kill" in job:
             time.sleep(max(0.0, start + job["kill"] - time.monotonic()))
             os.killpg(process, signal.SIGKILL) if _leads(process) else os.kill(process, 9)
         _, status = os.waitpid(process, 0)
-        stream.seek(0)
         answers.append(
             {
                 "status": os.waitstatus_to_exitcode(status),
-                "err": stream.read().decode(),
+                "out": _read(out),
+                "err": _read(error),
                 "seconds": time.monotonic() - start,
             }
         )
-        stream.close()
     return answers
+
+
+def _read(stream: Any) -> str:
+    with stream:
+        stream.seek(0)
+        return stream.read().decode()
 
 
 def _leads(process: int) -> bool:
@@ -116,6 +131,41 @@ def _leads(process: int) -> bool:
         return os.getpgid(process) == process
     except ProcessLookupError:
         return False
+
+
+class Commands:
+    """The zygote's other end, for tests: the process and what it answers."""
+
+    def __init__(self) -> None:
+        environment = os.environ | {"OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
+        self.process = subprocess.Popen(
+            [sys.executable, __file__],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env=environment,
+        )
+        assert self.process.stdout is not None
+        assert self.process.stdout.readline() == "ready\n"
+
+    def together(self, *jobs: dict[str, Any]) -> list[dict[str, Any]]:
+        """Run jobs at once."""
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        self.process.stdin.write(json.dumps(jobs, default=str) + "\n")
+        self.process.stdin.flush()
+        return json.loads(self.process.stdout.readline())
+
+    def __call__(self, *args: Any, **how: Any) -> dict[str, Any]:
+        return self.together({"args": list(map(str, args)), **how})[0]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.close()
+        assert self.process.wait(60) == 0
 
 
 def serve() -> None:

@@ -5,6 +5,8 @@ HYPOTHESIS_PROFILE is `steady`, the same examples on every run; `thorough`, more
 """
 
 import os
+import signal
+from pathlib import Path
 
 import pytest
 import zygote
@@ -21,3 +23,13 @@ def command():
     """Run bladegen's commands, and scripts, in processes that have imported what is slow."""
     with zygote.Commands() as commands:
         yield commands
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _broken_pipes_are_errors():
+    """No library may set SIGPIPE back: a later write into a closed pipe would end this process."""
+    yield
+    status = Path("/proc/self/status")
+    if status.is_file():
+        fields = dict(line.split(":") for line in status.read_text().splitlines())
+        assert int(fields["SigIgn"], 16) >> signal.SIGPIPE - 1 & 1, "SIGPIPE is not ignored"

@@ -1,4 +1,4 @@
-import gmsh
+import meshing
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -39,17 +39,9 @@ def test_solids_are_read_again_whole(solid, tmp_path, suffix):
 def test_gmsh_reads_them_as_one_volume_in_millimetres(solid, tmp_path, suffix):
     path = tmp_path / f"blade{suffix}"
     WRITERS[suffix](solid, path)
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.occ.importShapes(str(path))
-        gmsh.model.occ.synchronize()
-        volumes = gmsh.model.getEntities(3)
-        assert len(volumes) == 1
-        box = gmsh.model.getBoundingBox(*volumes[0])
-    finally:
-        gmsh.finalize()
-    assert_allclose(box[5], 1000 * solid.net.poles[..., 2].max(), rtol=1e-3)
+    found = meshing.found(path)
+    assert found.volumes == 1
+    assert_allclose(found.box[5], 1000 * solid.net.poles[..., 2].max(), rtol=1e-3)
 
 
 def test_the_schema_is_what_was_asked_for(solid, tmp_path):

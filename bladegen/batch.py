@@ -227,13 +227,13 @@ class SectionBatch:
         to_space, chord, twist = self._placement(change, len(t))
         sections: Array = np.empty((*shape, len(self.blade.u), 3), dtype=dtype)
         measures = np.empty((*shape, len(polygons.MEASURES)) if measured else (0, 0, 0))
-        thickness = _least_thickness(self.blade.trailing_edge)
-        if thickness is not None:
-            faults = self._made(raw, target, chord, thickness, to_space, sections, measures)
+        width = self._edge_width(target.T, chord)
+        if width is not None:
+            faults = self._made(raw, target, chord, width, to_space, sections, measures)
         else:
             plain = np.broadcast_to(np.eye(3), to_space.shape)
             profiles = np.empty(sections.shape)
-            faults = self._made(raw, target, chord, 0.0, plain, profiles, measures[:0])
+            faults = self._made(raw, target, chord, np.zeros(shape), plain, profiles, measures[:0])
             for i in range(len(t)):
                 profiles[i, ..., :2] = self.blade.trailing_edge(profiles[i, ..., :2], chord[i])
                 np.matmul(profiles[i], to_space[i], out=sections[i], casting="same_kind")
@@ -251,7 +251,7 @@ class SectionBatch:
         """
         raw, target = self.coefficients(t), self._target(change, len(t))
         chord, to_space, measures = np.empty((0, 0)), np.empty((0, 0, 0, 0)), np.empty((0, 0, 0))
-        faults = self._made(raw, target, chord, 0.0, to_space, to_space, measures)
+        faults = self._made(raw, target, chord, chord, to_space, to_space, measures)
         return faults.T, target.T
 
     def _target(self, change: AffineChange, count: int) -> Array:
@@ -265,7 +265,7 @@ class SectionBatch:
         raw: Array,
         target: Array,
         chord: Array,
-        edge: float,
+        edge: Array,
         to_space: Array,
         sections: Array,
         measures: Array,
@@ -276,11 +276,10 @@ class SectionBatch:
         own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
         standing = self._standing(target) if sections.size else target[..., None]
         given = [self.blade.u, self.features, self._slopes, raw, target, standing, own, known]
-        given += [chord, to_space, sections, measures]
+        given += [chord, to_space, sections, measures, edge]
         # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise
         kernels.made(
             *(np.require(values, requirements=["C", "W"]) for values in given),
-            float(edge),
             self.chord_line == KEPT,
         )
         return self._faults(raw, own, known)
@@ -299,6 +298,14 @@ class SectionBatch:
         crossing = crossing_sections(self.features[k].mT @ raw[k, b])
         faults[k[crossing], b[crossing]] = CROSSING
         return faults
+
+    def _edge_width(self, thickness: Array, chord: Array) -> Array | None:
+        """Return the least width of edges over the chord (b, k); None if another rule holds."""
+        edge: TrailingEdge = self.blade.trailing_edge
+        if type(edge) is MinimumThickness:
+            edge.require_room(thickness, chord)
+            return edge.width(chord)
+        return np.zeros(chord.shape) if type(edge) is AsGiven else None
 
     def _placement(self, change: AffineChange, count: int) -> tuple[Array, Array, Array]:
         """Return the maps (b, k, 3, 3) of (x, y, 1) to space, and chord and twist (b, k)."""
@@ -337,13 +344,6 @@ class SectionBatch:
         change = AffineChange(prebend_scale=float(prebend_scale))
         axis = change.applied(self.blade.definition, self.window).axis
         return axis(self.eta), self.blade.planes(axis)(self.eta)
-
-
-def _least_thickness(edge: TrailingEdge) -> float | None:
-    """Return the least thickness [m] that a policy asks for; None if it is of another kind."""
-    if type(edge) is MinimumThickness:
-        return edge.thickness
-    return 0.0 if type(edge) is AsGiven else None
 
 
 def _column(value: ArrayLike) -> Array:

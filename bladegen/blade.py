@@ -32,7 +32,7 @@ __all__ = ["PATHS", "Blade"]
 PATHS: dict[str, PathMaker] = {"geodesic": geodesic_path, "spline": spline_path}
 RESOLVING_SPANS = 1001  # spans at which bends are looked for
 RESOLVING_LANDMARKS = 40  # landmarks that are watched for bends, about
-MINIMUM_EDGE = MinimumThickness()
+MINIMUM_EDGE = MinimumThickness(0.002, most=0.01)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +132,8 @@ class Blade(Shaped):
         planes : callable
             Section planes, normal to the reference axis by default.
         trailing_edge : callable
-            Finish of the trailing edges in `sections`; at least 2 mm thick by default.
+            Finish of the trailing edges in `sections`; by default at least 2 mm thick, or 1 % of
+            the local chord where that is less.
         spacing : callable
             Spacing of the landmarks along each side.
         fairing : float, optional

@@ -17,7 +17,7 @@ from typing import Any
 
 from bladegen import __version__, cad, cad_files, checks, combs, exporters, mesh
 from bladegen.blade import Blade
-from bladegen.errors import ToleranceError
+from bladegen.errors import PromiseError
 from bladegen.files import alone, digest_of, folder, replacing, safe_stem
 from bladegen.grid_quality import grid_figures
 from bladegen.net import Deviation
@@ -69,9 +69,9 @@ def build(
 
     Raises
     ------
-    ToleranceError
-        If the solid misses its tolerance; the other files and the report are written all the
-        same, and the solid is kept under another name.
+    PromiseError
+        If the solid misses its tolerance (`ToleranceError`) or its size (`SizeError`); the other
+        files and the report are written all the same, and the solid is kept under another name.
     ExportError
         If a format is not known, the folder cannot be written, or another run writes this blade
         there.
@@ -110,22 +110,29 @@ def _built(
     with ledger.timed("measuring the blade"):
         report["figures"] = checks.check_blade(blade).figures
         report["airfoils"] = combs.figures(blade)
-    miss = None
+    miss: PromiseError | None = None
     for path in paths:
         made = path
         with ledger.timed(path.suffix.lstrip(".")):
             progress(f"writing {path.name}")
             try:
                 exporters.write(products, path)
-            except ToleranceError as error:
-                miss, made = error, exporters.aside(path)
+            except PromiseError as error:
+                miss, made = miss or error, error.kept or path
         ledger.note(made)
         with ledger.timed("measuring the files"):
             _measure(report, products, exporters.format_of(path).kind, made)
     if rotor is not None:
         report["rotor"] = asdict(rotor)
-        with ledger.writing(target / f"{stem}.rotor.step", "rotor") as temporary:
+        made = target / f"{stem}.rotor.step"
+        progress(f"writing {made.name}")
+        with ledger.timed("rotor"), replacing(made) as temporary:
             write_step(rotor, products.solid, temporary)
+        try:
+            exporters.require_size(products, made)
+        except PromiseError as error:
+            miss, made = miss or error, error.kept or made
+        ledger.note(made)
         with ledger.writing(target / f"{stem}.rotor.glb", "rotor") as temporary:
             write_glb(rotor, products.mesh, temporary)
     if any(path.suffix == ".png" for path in paths):

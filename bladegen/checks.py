@@ -11,17 +11,29 @@ from typing import Any
 
 import numpy as np
 
-from bladegen import affine, cad, cad_files, inflections, mesh, properties, smoothness
+from bladegen import (
+    affine,
+    cad,
+    cad_files,
+    inflections,
+    mesh,
+    polygons,
+    properties,
+    smoothness,
+)
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.chord_lines import ChordLines
 from bladegen.crossing import crossing_sections
+from bladegen.edges import MinimumThickness
 from bladegen.errors import FileError, Finding
 from bladegen.sections import SectionSplines
 
 __all__ = ["Check", "check_blade", "check_file", "mesh_figures", "solid_figures"]
 
 SPANS = 200  # spans at which a blade is held against its definition
+ADDED = 0.01  # of the volume: what the finish of trailing edges may add without a finding
+SAME = 1e-9  # relative, of thicknesses that differ by rounding
 SLIVER = 1e-12  # of a mesh's extent; triangles lower than this are degenerate
 MEMBERS = ("solids", "shells", "faces")
 
@@ -133,6 +145,9 @@ def check_blade(blade: Blade) -> Check:
     profiles = blade.profiles(eta)
     curves = SectionSplines(blade.u).fit(profiles)
     thickness = blade.wanted_thickness(eta)
+    finished = blade.trailing_edge(profiles, blade.chord(eta))
+    built = SectionSplines(blade.u).fit(finished)
+    added = _added(blade, eta, profiles, finished)
     figures: dict[str, Any] = {
         "stations": len(blade.eta),
         "landmarks": len(blade.u),
@@ -143,17 +158,52 @@ def check_blade(blade: Blade) -> Check:
         "twist_error_deg": float(np.degrees(np.abs(_twist_error(blade, eta, profiles)).max())),
         "thickness_error": None
         if thickness is None
-        else float(np.abs(curves.relative_thickness - thickness).max()),
+        else float(np.abs(built.relative_thickness - thickness).max()),
+        "edge_adds_volume": added,
         "airfoils_moved_by_chord": max((c.moved for c in blade.contours or ()), default=0.0),
         **_smoothness(blade),
-        "findings": [str(finding) for finding in (*blade.findings, *_wiggles(blade))],
+        "findings": [
+            str(finding)
+            for finding in (*blade.findings, *_thickened(blade, added), *_wiggles(blade))
+        ],
     }
-    finished = blade.trailing_edge(profiles, blade.chord(eta))
     problems = [
         f"section at eta = {eta[k]:.4f} crosses itself" for k in crossing_sections(finished)
     ]
     figures["sections_crossing"] = len(problems)
     return Check(blade.definition.source or blade.name, "blade", figures, tuple(problems))
+
+
+def _added(blade: Blade, eta: Array, profiles: Array, finished: Array) -> float:
+    """Return what finishing the trailing edges adds to the volume, of the volume as given."""
+    chord = blade.chord(eta)[:, None, None]
+    before, after = (
+        np.trapezoid(polygons.measure(points * chord)[:, 0], eta) for points in (profiles, finished)
+    )
+    return float(after / before - 1.0)
+
+
+def _thickened(blade: Blade, added: float) -> list[Finding]:
+    """Return what trailing edges change that a designer would not expect."""
+    said, rule = [], blade.trailing_edge
+    if isinstance(rule, MinimumThickness):
+        eta = np.linspace(0.0, 1.0, SPANS)
+        chord = blade.chord(eta)
+        thickness = rule.width(chord) * chord
+        least = int(np.argmin(thickness))
+        if thickness[least] < rule.thickness * (1.0 - SAME):
+            said.append(
+                f"at least {1e3 * thickness[least]:.3g} mm thick at eta = {eta[least]:.3f}, where "
+                f"{1e3 * rule.thickness:g} mm would be more than {100 * (rule.most or 0):g} % of "
+                f"the chord; --trailing-edge {1e3 * rule.thickness:g}mm makes it so all over"
+            )
+    if abs(added) > ADDED:
+        verb = "adds" if added > 0 else "takes"
+        said.append(
+            f"its finish ({rule}) {verb} {100 * abs(added):.1f} % of the volume; "
+            "--trailing-edge given leaves edges as they are"
+        )
+    return [Finding("trailing edge", text) for text in said]
 
 
 def _smoothness(blade: Blade) -> dict[str, Any]:

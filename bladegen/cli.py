@@ -223,7 +223,7 @@ def _build(
     """Build a blade's files and print what was made, a missed tolerance included."""
     from bladegen.build import DEFAULT_FORMATS
     from bladegen.build import build as build_files
-    from bladegen.errors import ToleranceError
+    from bladegen.errors import PromiseError
 
     miss = None
     with progress_bar() as progress:
@@ -236,7 +236,7 @@ def _build(
                 rotor=rotor,
                 progress=progress,
             )
-        except ToleranceError as error:
+        except PromiseError as error:
             miss = error
     print_summary(output, blade.name)
     if miss is not None:

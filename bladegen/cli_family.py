@@ -143,6 +143,7 @@ def _summary(order: Any, made: int) -> None:
     """Draw the contact sheet and say what the folder holds."""
     from bladegen.contact import contact_sheet
     from bladegen.family_files import read_manifest
+    from bladegen.tables import digits, megabytes
 
     manifest = read_manifest(order.place, ("name", "valid", "attempts", "volume_m3", "reason"))
     sheet = order.target / "contact.png"
@@ -152,14 +153,15 @@ def _summary(order: Any, made: int) -> None:
     )
     valid = manifest["valid"]
     volume = manifest["volume_m3"][valid]
+    smallest, largest = (digits(v, 1) for v in (min(volume, default=0), max(volume, default=0)))
     size = sum(file.stat().st_size for file in order.target.rglob("*") if file.is_file())
     rows = [
         ["variants", f"{len(valid)}, {made} of them made now"],
         ["sound", f"{int(valid.sum())} of {len(valid)}"],
         ["draws", f"{int(manifest['attempts'].sum())}"],
-        ["volume", f"{volume.min():.1f} to {volume.max():.1f} m3" if len(volume) else "none"],
+        ["volume", f"{smallest} to {largest} m3" if len(volume) else "none"],
         ["sections", f"{len(family.eta)} of {len(family.blade.u)} landmarks, {order.dtype}"],
-        ["size", f"{size / 1e6:.1f} MB"],
+        ["size", megabytes(size)],
         ["overlay", remark],
     ]
     print_table(["figure", "value"], rows, title=f"family of {family.blade.name}")

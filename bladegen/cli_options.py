@@ -15,6 +15,8 @@ from typing import Annotated, Any, get_args
 
 import typer
 
+from bladegen.errors import BladegenError
+
 __all__ = [
     "LANDMARKS",
     "MAKING",
@@ -34,7 +36,8 @@ __all__ = [
 ]
 
 LANDMARKS = 401
-LIGHT = "1mm"
+TOLERANCE = "0.3mm"
+LIGHT, LIGHT_BYTES = "1mm", 2_000_000
 GRIDS = "Structured grids: p3d, fmt, cgns, vtu"
 
 
@@ -166,10 +169,11 @@ class Making:
     trailing_edge: Annotated[
         str,
         typer.Option(
-            metavar="LENGTH|given|sharp",
-            help="Least thickness of the trailing edge, such as 2mm; or as given; or sharp.",
+            metavar="LENGTH[,SHARE%]|given|sharp",
+            help="Least thickness of the trailing edge, such as 5mm; 2mm,1% is at most 1 % of the "
+            "local chord; or as given; or sharp.",
         ),
-    ] = "2mm"
+    ] = "2mm,1%"
     fairing: Annotated[
         str,
         typer.Option(
@@ -182,21 +186,20 @@ class Making:
     def blade(self, source: str, landmarks: int = LANDMARKS) -> Any:
         """Read and build a blade."""
         from bladegen.blade import Blade
-        from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
         from bladegen.planform import normal_to_axis, normal_to_z
         from bladegen.readers import read
-        from bladegen.texts import chord_share, metres
+        from bladegen.texts import chord_share, finish
 
-        named: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
-        edge = named.get(self.trailing_edge)
-        return Blade.from_definition(
+        made = Blade.from_definition(
             read(source, airfoils=self.airfoils),
             landmarks=landmarks,
             path=self.path,
             planes={"axis": normal_to_axis, "z": normal_to_z}[self.planes],
-            trailing_edge=edge or MinimumThickness(metres(self.trailing_edge, "trailing-edge")),
+            trailing_edge=finish(self.trailing_edge),
             fairing=chord_share(self.fairing, "fairing"),
         )
+        made.sections(made.eta)  # refuses a trailing edge that is thicker than its section
+        return made
 
 
 @dataclass(frozen=True)
@@ -204,8 +207,9 @@ class Producing:
     """How a blade becomes files."""
 
     tolerance: Annotated[
-        str, typer.Option(metavar="LENGTH", help="Largest deviation of the solid, such as 0.3mm.")
-    ] = "0.3mm"
+        str | None,
+        typer.Option(metavar="LENGTH", help="Largest deviation of the solid; 0.3mm if not given."),
+    ] = None
     light: Annotated[
         bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")
     ] = False
@@ -238,9 +242,15 @@ class Producing:
         from bladegen.texts import metres
         from bladegen.tips import Tip, flat_tip, round_tip
 
+        if self.light and self.tolerance is not None:
+            raise BladegenError(
+                f"--tolerance: got {self.tolerance}, but --light takes {LIGHT}; leave one out"
+            )
+        tolerance = LIGHT if self.light else self.tolerance or TOLERANCE
         tips: dict[str, Tip] = {"flat": flat_tip, "round": round_tip}
         return Options(
-            tolerance=metres(LIGHT if self.light else self.tolerance, "tolerance"),
+            tolerance=metres(tolerance, "tolerance"),
+            largest=LIGHT_BYTES if self.light else None,
             step_schema=self.step,
             stations=self.stations,
             tip=tips[self.tip],

@@ -163,6 +163,7 @@ def _sweep(
     """Render a sweep once and write it as asked."""
     from bladegen.files import replacing
     from bladegen.preview import sweep
+    from bladegen.tables import megabytes
     from bladegen.texts import factor_bounds
 
     motion = sweep.Motion(blade, space, factor_bounds(texts, "sweep"), count)
@@ -174,7 +175,7 @@ def _sweep(
         if path is not None:
             with replacing(path) as temporary:
                 write(images, temporary)
-            typer.echo(f"wrote {path}: {count} frames, {path.stat().st_size / 1e6:.1f} MB")
+            typer.echo(f"wrote {path}: {count} frames, {megabytes(path.stat().st_size)}")
 
 
 def _compare(

@@ -16,6 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from bladegen.arrays import Array
+from bladegen.errors import GeometryError
 
 __all__ = ["AsGiven", "MinimumThickness", "Sharp", "TrailingEdge"]
 
@@ -38,21 +39,67 @@ class TrailingEdge(Protocol):
 class AsGiven:
     """Trailing edges as the airfoils give them, open or closed."""
 
+    def __str__(self) -> str:
+        return "given"
+
     def __call__(self, profiles: Array, chord: Array) -> Array:  # noqa: ARG002
         return profiles
 
 
 @dataclass(frozen=True)
 class MinimumThickness:
-    """Trailing edges at least `thickness` [m] thick; thicker ones stay as they are."""
+    """Trailing edges at least so thick; thicker ones stay as they are.
+
+    Parameters
+    ----------
+    thickness : float
+        [m].
+    most : float, optional
+        Of the local chord: where that is less than `thickness`, it is what edges get at least.
+    """
 
     thickness: float = 0.002
+    most: float | None = None
+
+    def __str__(self) -> str:
+        length = f"{1e3 * self.thickness:.12g}mm"
+        return length if self.most is None else f"{length},{100.0 * self.most:.12g}%"
+
+    def width(self, chord: Array) -> Array:
+        """Return how thick edges become at least, over the chord, at chords (...) [m]."""
+        least: Array = self.thickness / chord
+        return least if self.most is None else np.minimum(least, self.most)
+
+    def require_room(self, thickness: Array, chord: Array) -> None:
+        """See that sections are thicker than their edges shall be.
+
+        Parameters
+        ----------
+        thickness, chord : (...) arrays
+            Relative thickness, and chord [m].
+
+        Raises
+        ------
+        GeometryError
+            If an edge would be thicker than its section.
+        """
+        excess = self.width(chord) - thickness
+        if bool(np.any(excess > 0.0)):
+            worst = np.unravel_index(np.argmax(excess), excess.shape)
+            room = 1e3 * float(thickness[worst] * chord[worst])
+            raise GeometryError(
+                f"trailing edge: got {self}, more than the thickness of {room:.4g} mm of the "
+                f"section whose chord is {float(chord[worst]):.4g} m; allowed is less, such as "
+                "--trailing-edge 2mm,1%"
+            )
 
     def __call__(self, profiles: Array, chord: Array) -> Array:
+        half, middle = _halves(profiles)
+        self.require_room(2.0 * half[..., 1].max(axis=1), chord)
         given = 0.5 * (profiles[:, 0, 1] - profiles[:, -1, 1])
-        missing = (0.5 * self.thickness / chord) ** 2 - given**2
+        missing = (0.5 * self.width(chord)) ** 2 - given**2
         thin = np.flatnonzero(missing > 0)
-        half, middle = _halves(profiles[thin])
+        half, middle = half[thin], middle[thin]
         window = _window(middle) * missing[thin, None]
         half[..., 1] = np.sqrt(half[..., 1] ** 2 + window)
         result = profiles.copy()
@@ -69,6 +116,9 @@ class Sharp:
     Opposite landmarks move along the line that joins them, so that sides that do not cross still
     do not.
     """
+
+    def __str__(self) -> str:
+        return "sharp"
 
     def __call__(self, profiles: Array, chord: Array) -> Array:  # noqa: ARG002
         half, middle = _halves(profiles)

@@ -6,6 +6,7 @@ the value and what is allowed.  A `Finding` is a remark on data that was accepte
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 __all__ = [
     "BladegenError",
@@ -18,7 +19,9 @@ __all__ = [
     "Finding",
     "GeometryError",
     "PerturbationError",
+    "PromiseError",
     "RenderError",
+    "SizeError",
     "SpaceError",
     "StudioError",
     "ToleranceError",
@@ -80,8 +83,28 @@ class StudioError(BladegenError):
     """The studio cannot start, or is asked for what it does not show."""
 
 
-class ToleranceError(CadError):
-    """A solid was made, but deviates from the blade by more than was asked for."""
+class PromiseError(CadError):
+    """A solid was made, but is not what was asked for.
+
+    Parameters
+    ----------
+    message : str
+        What was promised and what was reached.
+    kept : Path, optional
+        The file, under a name that says so.
+    """
+
+    def __init__(self, message: str, kept: Path | None = None) -> None:
+        super().__init__(message)
+        self.kept = kept
+
+
+class ToleranceError(PromiseError):
+    """A solid deviates from the blade by more than was asked for."""
+
+
+class SizeError(PromiseError):
+    """A solid's file is larger than was asked for."""
 
 
 class ExportError(BladegenError):

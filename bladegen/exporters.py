@@ -16,7 +16,7 @@ from typing import Any
 from bladegen import cad, cad_files, grid, grid_files, mesh, preview, writers
 from bladegen.arrays import Array
 from bladegen.blade import Blade
-from bladegen.errors import ExportError, Finding, ToleranceError
+from bladegen.errors import ExportError, Finding, SizeError, ToleranceError
 from bladegen.files import replacing
 from bladegen.tips import Tip, flat_tip
 
@@ -30,6 +30,7 @@ __all__ = [
     "aside",
     "export",
     "format_of",
+    "require_size",
     "write",
 ]
 
@@ -60,6 +61,8 @@ class Options:
         STEP: "ap242" or "ap214".
     timestamp : str, optional
         STEP and IGES: the time in the header, ISO 8601, instead of now.
+    largest : int, optional
+        Solids: the most bytes that a file may take.
     spans : (k,) array, optional
         Solids: sections to begin with, such as those of a blade that is alike.
     spacing : Spacing
@@ -75,6 +78,7 @@ class Options:
     unit: str = "m"
     step_schema: str = "ap242"
     timestamp: str | None = None
+    largest: int | None = None
     spans: Array | None = None
     spacing: grid.Spacing = field(default_factory=grid.Spacing)
     polars: str | None = None
@@ -329,7 +333,8 @@ def export(blade: Blade, path: str | Path, **options: Any) -> Path:
         If the suffix is unknown or the file cannot be written.
     CadError
         If the solid is not valid; `ToleranceError` if it misses its tolerance, with the file
-        kept beside the target as ``<name>.out-of-tolerance.step``.
+        kept beside the target as ``<name>.out-of-tolerance.step``; `SizeError` if it is larger
+        than `Options.largest`, kept as ``<name>.too-large.step``.
     """
     path = Path(path)
     products = Products(blade, Options(**options))
@@ -353,7 +358,8 @@ def write(products: Products, path: Path) -> None:
             miss = ToleranceError(
                 f"{path}: the solid is {solid.deviation.maximum * 1e3:.3f} mm off the blade at "
                 f"eta = {solid.deviation.eta:.4f}, allowed is {tolerance * 1e3:g} mm; kept as "
-                f"{target.name}; more landmarks than {len(products.blade.u)} may help"
+                f"{target.name}; more landmarks than {len(products.blade.u)} may help",
+                target,
             )
     if row.kind is Kind.definition:
         row.write(products, target)
@@ -362,3 +368,25 @@ def write(products: Products, path: Path) -> None:
             row.write(products, temporary)
     if miss is not None:
         raise miss
+    if row.kind is Kind.solid:
+        require_size(products, target)
+
+
+def require_size(products: Products, path: Path) -> None:
+    """See that a solid's file is no larger than asked for; keep it under another name if it is.
+
+    Raises
+    ------
+    SizeError
+        If it is larger.
+    """
+    size, largest = path.stat().st_size, products.options.largest
+    if largest is None or size <= largest:
+        return
+    kept = path.replace(path.with_suffix(f".too-large{path.suffix}"))
+    raise SizeError(
+        f"{path}: takes {size / 1e6:.2f} MB at {products.options.tolerance * 1e3:g} mm, allowed "
+        f"are {largest / 1e6:g} MB (--light); kept as {kept.name}; --tolerance with a larger "
+        "length, or --fairing 1e-4 where airfoils are noisy, makes it smaller",
+        kept,
+    )

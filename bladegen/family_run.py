@@ -18,7 +18,7 @@ import numpy as np
 from bladegen import exporters, polygons
 from bladegen.arrays import Array, Indices
 from bladegen.blade import Blade
-from bladegen.errors import ExportError, FamilyError, PerturbationError, ToleranceError
+from bladegen.errors import ExportError, FamilyError, PerturbationError, PromiseError
 from bladegen.families import BLOCK, Block, Family
 from bladegen.family_files import FLOAT_TYPES, FamilyFolder, sections_digest
 from bladegen.files import digest_of, folder
@@ -269,8 +269,7 @@ def _exported(order: Order, block: Block, suffix: str, faults: dict[int, str]) -
             problem = faults[place]
         elif valid:
             path = order.place.blades / f"{order.family.name(int(place))}{suffix}"
-            problem = _export(order, order.family.named(block, int(place)), path)
-            made = exporters.aside(path) if problem else path
+            made, problem = _export(order, order.family.named(block, int(place)), path)
             name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
         names.append(name)
         digests.append(digest)
@@ -279,14 +278,14 @@ def _exported(order: Order, block: Block, suffix: str, faults: dict[int, str]) -
     return {f"{kind}_file": names, f"{kind}_sha256": digests, f"{kind}_problem": problems}
 
 
-def _export(order: Order, blade: Blade, path: Path) -> str:
-    """Write one file; return what is wrong with it, kept beside its name, or ""."""
+def _export(order: Order, blade: Blade, path: Path) -> tuple[Path, str]:
+    """Write one file; return it, under another name if something is wrong, and what, or ""."""
     options = replace(order.options, timestamp=TIMESTAMP, spans=order.spans)
     try:
         exporters.write(exporters.Products(blade, options), path)
-    except ToleranceError as error:
-        return str(error).replace(f"{path.parent}/", "")
-    return ""
+    except PromiseError as error:
+        return error.kept or path, str(error).replace(f"{path.parent}/", "")
+    return path, ""
 
 
 _ORDER: list[Order] = []  # of a worker process, set once when it starts

@@ -43,7 +43,7 @@ def made(
     to_space: Array,
     sections: Array,
     measures: Array,
-    edge: float,
+    edge: Array,
     kept: bool,
 ) -> None:
     """Test sections, bring them to unit chord and relative thickness, finish and place them.
@@ -73,8 +73,8 @@ def made(
         Filled: points [m].
     measures : (b, k, 7) array, or of no length
         Filled: `polygons.MEASURES` [m].
-    edge : float
-        Least thickness of the trailing edges [m].
+    edge : (b, k) array, or of no length without sections
+        Least thickness of the trailing edges over the chord.
     kept : bool
         Whether `standing` holds chord lines; else motions.
     """
@@ -97,7 +97,7 @@ def made(
                     carry(points, onto(line, there))
                 else:
                     carry(points, motion_of(there))
-                finish(points, edge / chord[b, k])
+                finish(points, edge[b, k])
                 place(points, to_space[b, k], sections[b, k])
             if len(measures):
                 measure(points, chord[b, k], measures[b, k])

@@ -11,6 +11,7 @@ import numpy as np
 
 from bladegen.blade import Blade
 from bladegen.blade_plots import overview
+from bladegen.tables import digits
 
 __all__ = ["blade_html"]
 
@@ -40,8 +41,8 @@ def _figures(blade: Blade) -> dict[str, str]:
     airfoils = dict.fromkeys(station.airfoil.name for station in blade.definition.stations)
     figures = {
         "name": blade.name,
-        "length": f"{blade.length:.2f} m",
-        "chord": f"{chord[0]:.2f} m at the root, {chord.max():.2f} m at most",
+        "length": f"{digits(blade.length, 2)} m",
+        "chord": f"{digits(chord[0], 2)} m at the root, {digits(chord.max(), 2)} m at most",
         "twist": f"{twist[0]:.2f} to {twist[-1]:.2f} deg",
         "prebend, sweep": f"{tip[0]:.2f} m, {tip[1]:.2f} m",
         "stations": f"{len(blade.eta)}, {len(airfoils)} airfoils",

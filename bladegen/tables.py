@@ -10,6 +10,8 @@ from bladegen.pga import ShapeSpace
 
 __all__ = [
     "definition_figures",
+    "digits",
+    "megabytes",
     "report_rows",
     "shown",
     "space_figures",
@@ -19,6 +21,27 @@ __all__ = [
 
 
 SHOWN_DIRECTIONS = 12
+LEAST_DIGITS = 4  # of a figure that is not zero
+
+
+def digits(value: float, decimals: int) -> str:
+    """Return a figure with so many decimals, and more where it would lose its digits.
+
+    >>> digits(64.2421, 2), digits(0.0072, 2), digits(1.3731e-5, 4), digits(0.0, 2)
+    ('64.24', '0.007200', '1.373e-05', '0.00')
+    """
+    if value == 0.0 or abs(value) >= 10.0 ** (LEAST_DIGITS - 1 - decimals):
+        return f"{value:.{decimals}f}"
+    return f"{value:#.{LEAST_DIGITS}g}"
+
+
+def megabytes(size: int) -> str:
+    """Return a file's size: MB, or kB where that is less than a tenth of one.
+
+    >>> megabytes(1_850_000), megabytes(14_200), megabytes(80)
+    ('1.9 MB', '14.2 kB', '0.1 kB')
+    """
+    return f"{size / 1e6:.1f} MB" if size >= 1e5 else f"{max(size, 50) / 1e3:.1f} kB"
 
 
 def definition_figures(definition: BladeDefinition) -> dict[str, Any]:
@@ -66,9 +89,9 @@ def station_rows(definition: BladeDefinition) -> list[list[str]]:
     return [
         [
             f"{station.eta:.4f}",
-            f"{z[i]:.2f}",
+            digits(z[i], 2),
             station.airfoil.name,
-            f"{chord[i]:.3f}",
+            digits(chord[i], 3),
             f"{twist[i]:.2f}",
             "" if thickness is None else f"{ratios[i]:.3f}",
         ]
@@ -85,8 +108,8 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
     """Return the main figures of a build report."""
     figures = report["figures"]
     rows = [
-        ["length", f"{figures['length_m']:.3f} m"],
-        ["volume by its sections", f"{figures['volume_m3']:.4f} m3"],
+        ["length", f"{digits(figures['length_m'], 3)} m"],
+        ["volume by its sections", f"{digits(figures['volume_m3'], 4)} m3"],
         ["stations missed by", f"{figures['stations_missed_by_chord']:.1e} chord"],
         ["airfoils off their points by", f"{figures['airfoils_moved_by_chord']:.1e} chord"],
         ["chord off its spline by", f"{figures['chord_error_relative']:.1e}"],
@@ -94,6 +117,9 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
     ]
     if figures["thickness_error"] is not None:
         rows.append(["thickness off its spline by", f"{figures['thickness_error']:.1e} chord"])
+    if figures["edge_adds_volume"]:
+        added = f"{digits(100 * figures['edge_adds_volume'], 3)} % of the volume"
+        rows.append(["trailing edge adds", added])
     if figures["crease_at_eta"] is not None:
         crease = f"{figures['crease_deg']:.2f} deg at eta = {figures['crease_at_eta']:.3f}"
         rows.append(["largest crease", crease])
@@ -106,13 +132,11 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
             ["solid", f"{solid['solids']} {sound}, {closed}, {solid['faces']} faces"],
             [
                 "solid off the blade by",
-                f"{deviation['maximum']:.3f} mm at most, on the {deviation['on_face']}",
+                f"{digits(deviation['maximum'], 3)} mm at most, on the {deviation['on_face']}",
             ],
-            ["", f"{deviation['rms']:.4f} mm RMS"],
-            [
-                "solid's volume",
-                f"{solid['volume_m3']:.4f} m3, {solid['tip_volume_m3']:.4f} in its tip",
-            ],
+            ["", f"{digits(deviation['rms'], 4)} mm RMS"],
+            ["solid's volume", f"{digits(solid['volume_m3'], 4)} m3"],
+            ["of it in its tip", f"{digits(solid['tip_volume_m3'], 4)} m3"],
             ["without its tip off by", f"{solid['volume_against_sections']:.1e}"],
             ["volume change on reading", f"{solid['volume_change_on_reading']:.1e}"],
         ]

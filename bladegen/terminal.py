@@ -99,12 +99,12 @@ def variants_bar(count: int, what: str = "variants") -> Iterator[Any]:
 def print_summary(folder: Path, name: str) -> None:
     """Print a report's main figures and the files."""
     from bladegen.build import report_path
-    from bladegen.tables import report_rows
+    from bladegen.tables import megabytes, report_rows
 
     path = report_path(folder, name)
     report = json.loads(path.read_text(encoding="utf-8"))
     print_table(["figure", "measured"], report_rows(report), title=report["blade"])
-    rows = [[str(folder / f["name"]), f"{f['bytes'] / 1e6:.1f} MB"] for f in report["files"]]
+    rows = [[str(folder / f["name"]), megabytes(f["bytes"])] for f in report["files"]]
     rows.append([str(path), "all figures"])
     print_table(["file", "size"], rows)
     print_findings(report["figures"]["findings"] + report["remarks"])

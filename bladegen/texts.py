@@ -9,6 +9,7 @@ import numpy as np
 
 from bladegen.deformation import Coordinates, Window
 from bladegen.designs import Design, tabulated
+from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
 from bladegen.errors import BladegenError, DesignError, FileError
 from bladegen.files import content_of
 from bladegen.pga import ShapeSpace
@@ -19,6 +20,7 @@ __all__ = [
     "coordinates",
     "factor_bounds",
     "factor_table",
+    "finish",
     "metres",
     "radians",
     "span_window",
@@ -70,6 +72,35 @@ def radians(text: str, field: str) -> float:
         )
     value = float(match[1])
     return value if match[2] == "rad" else math.radians(value)
+
+
+def finish(text: str, field: str = "trailing-edge") -> TrailingEdge:
+    """Return the rule for trailing edges of a text: given, sharp, 2mm, or 2mm,1%.
+
+    Raises
+    ------
+    BladegenError
+        If it is none of these.
+
+    >>> finish("2mm,1%")
+    MinimumThickness(thickness=0.002, most=0.01)
+    """
+    if text in _NAMED:
+        return _NAMED[text]
+    length, comma, share = text.partition(",")
+    if not comma:
+        return MinimumThickness(metres(length, field))
+    match = _PER_CENT.fullmatch(share)
+    if match is None or not 0 < float(match[1]) <= 100:
+        raise BladegenError(
+            f"{field}: got {text!r}, allowed are given, sharp, a length such as 2mm, or with the "
+            "most of the local chord that it may be, 2mm,1%"
+        )
+    return MinimumThickness(metres(length, field), float(match[1]) / 100.0)
+
+
+_NAMED: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
+_PER_CENT = re.compile(r"\s*([0-9]*\.?[0-9]+)\s*%\s*")
 
 
 def chord_share(text: str, field: str) -> float | None:

@@ -10,6 +10,7 @@ from bladegen.batch import FAULTS, LOST_THICKNESS, SectionBatch
 from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange, Window
 from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.errors import GeometryError
 
 BLADES = ("iea15mw", "nrel5mw", "dtu10mw")
 SPANS = np.linspace(0.0, 1.0, 37)
@@ -125,7 +126,9 @@ def test_a_batch_equals_its_parts_to_the_bit_and_may_be_single_precision():
     assert_array_equal(small.sections, whole.sections.astype(np.float32))
 
 
-@pytest.mark.parametrize("edge", [MinimumThickness(0.01), AsGiven(), Sharp()])
+@pytest.mark.parametrize(
+    "edge", [MinimumThickness(0.01), MinimumThickness(0.05, 0.01), AsGiven(), Sharp()]
+)
 def test_trailing_edges_are_finished_and_measured_as_the_blade_says(edge):
     blade = batch_of("dtu10mw").blade.with_trailing_edge(edge)
     made, t = SectionBatch(blade, space(), Window(), SPANS), drawn(6, 2, 0.3)
@@ -186,3 +189,9 @@ def test_a_batch_treats_chord_lines_as_perturbed_blades_do(chord_line):
             allow_extrapolation=True,
         )
         assert_allclose(sections[i], variant.sections(SPANS), rtol=0, atol=1e-9)
+
+
+def test_edges_thicker_than_a_section_are_refused():
+    blade = batch_of("dtu10mw").blade.with_trailing_edge(MinimumThickness(2.0))
+    with pytest.raises(GeometryError, match="trailing edge: got 2000mm, more than the thickness"):
+        SectionBatch(blade, space(), Window(), SPANS).evaluate(drawn(6, 2, 0.3), AffineChange())

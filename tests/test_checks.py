@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen import checks, mesh
 from bladegen.definition import Distribution
-from bladegen.edges import MinimumThickness
+from bladegen.edges import AsGiven, MinimumThickness
 from bladegen.errors import BladegenError, FileError
 
 
@@ -48,6 +48,46 @@ def test_a_wrong_twist_is_measured(blade, monkeypatch):
         type(blade.planform), "place", lambda self, p, eta: honest(self, p * [1.0, -1.0], eta)
     )
     assert checks.check_blade(blade).figures["twist_error_deg"] > 1e-3
+
+
+def shrunk(definition, factor):
+    """A definition with all of its lengths times a factor."""
+
+    def scaled(quantity):
+        return None if quantity is None else replace(quantity, values=quantity.values * factor)
+
+    axis = definition.axis
+    return replace(
+        definition,
+        chord=scaled(definition.chord),
+        axis=replace(axis, x=scaled(axis.x), y=scaled(axis.y), z=scaled(axis.z)),
+        section_offset_x=scaled(definition.section_offset_x),
+        section_offset_y=scaled(definition.section_offset_y),
+    )
+
+
+@pytest.mark.parametrize("factor", [0.3, 0.02, 0.002])
+def test_a_model_has_the_volume_of_its_scale(blade, factor):
+    model = bg.Blade.from_definition(shrunk(blade.definition, factor), landmarks=101)
+    figures = checks.check_blade(model).figures
+    whole = checks.check_blade(blade).figures["volume_m3"]
+    assert figures["volume_m3"] == pytest.approx(whole * factor**3, rel=5e-3)
+    assert 0 <= figures["edge_adds_volume"] < 5e-3
+    assert any("2 mm would be more" in said for said in figures["findings"]) == (factor < 0.1)
+
+
+def test_an_edge_that_adds_volume_is_said_and_its_thickness_measured(blade):
+    thick = checks.check_blade(blade.with_trailing_edge(MinimumThickness(0.2))).figures
+    (said,) = (one for one in thick["findings"] if one.startswith("trailing edge"))
+    assert "its finish (200mm) adds" in said
+    given_ = checks.check_blade(blade.with_trailing_edge(AsGiven())).figures
+    added = thick["volume_m3"] / given_["volume_m3"] - 1
+    assert thick["edge_adds_volume"] == pytest.approx(added, rel=0.1)
+    assert given_["edge_adds_volume"] == 0.0
+    assert thick["thickness_error"] > 1e-8 > given_["thickness_error"]  # splines ring, a little
+    stretched = blade.with_trailing_edge(lambda profiles, chord: profiles * [1.0, 1.01])
+    error = checks.check_blade(stretched).figures["thickness_error"]
+    assert error == pytest.approx(0.01, rel=0.05)  # of a root that is round
 
 
 def test_sections_that_cross_are_named(blade):

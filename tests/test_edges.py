@@ -5,8 +5,10 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.errors import BladegenError, GeometryError
 from bladegen.landmarks import landmark_parameters, landmarks
 from bladegen.sections import SectionSplines
+from bladegen.texts import finish
 from strategies import airfoils, circle
 
 U = landmark_parameters(401)
@@ -76,3 +78,35 @@ def test_inputs_are_left_untouched(edge):
     kept = profile.copy()
     edge(profile, np.array([1.0]))
     assert_allclose(profile, kept, atol=0)
+
+
+@given(airfoils(), st.floats(0.01, 6.0), st.floats(0.0, 0.01), st.floats(0.001, 0.03))
+def test_a_share_of_the_chord_bounds_what_is_added(xy, chord, minimum, most):
+    profile = landmarks(xy, 401)[None]
+    rule = MinimumThickness(minimum, most)
+    finished = rule(profile, np.array([chord]))
+    gap = profile[0, 0, 1] - profile[0, -1, 1]
+    new_gap = finished[0, 0, 1] - finished[0, -1, 1]
+    assert_allclose(new_gap, max(gap, min(minimum / chord, most)), atol=1e-12)
+    assert rule.width(np.array([chord]))[0] <= most
+
+
+def test_an_edge_is_not_thicker_than_its_section():
+    profile = landmarks(circle(721), 401)[None] * [1.0, 0.2]
+    for thickness in (0.019, 0.199):
+        MinimumThickness(thickness)(profile, np.ones(1))
+    with pytest.raises(GeometryError, match=r"got 201mm, more than the thickness of 200 mm of the"):
+        MinimumThickness(0.201)(profile, np.ones(1))
+    with pytest.raises(GeometryError, match=r"whose chord is 0\.05 m; .* --trailing-edge 2mm,1%"):
+        MinimumThickness(0.02)(np.repeat(profile, 2, axis=0), np.array([1.0, 0.05]))
+
+
+@pytest.mark.parametrize("text", ["given", "sharp", "2mm,1%", "5mm", "0.3mm,2.5%"])
+def test_rules_are_written_as_they_are_read(text):
+    assert str(finish(text)) == text
+
+
+@pytest.mark.parametrize("text", ["2", "2mm,1", "2mm,0%", "2mm,101%", "blunt", "2mm,x%", ","])
+def test_other_words_for_edges_are_refused(text):
+    with pytest.raises(BladegenError, match="trailing-edge: got"):
+        finish(text)

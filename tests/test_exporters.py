@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen import cad, cad_files, exporters, mesh
-from bladegen.errors import ExportError, ToleranceError
+from bladegen.errors import ExportError, SizeError, ToleranceError
 from bladegen.grid import Spacing
 from bladegen.tips import flat_tip, round_tip
 
@@ -160,3 +160,17 @@ def test_a_failing_writer_leaves_nothing(blade, tmp_path, monkeypatch):
     with pytest.raises(ExportError, match="No space left"):
         bg.export(blade, tmp_path / "blade.stl")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_solid_larger_than_allowed_is_kept_aside(blade, tmp_path):
+    products = exporters.Products(
+        blade, exporters.Options(tolerance=5e-3, sections=30, largest=9000)
+    )
+    with pytest.raises(
+        SizeError, match=r"takes \d\.\d\d MB at 5 mm, allowed are 0\.009 MB"
+    ) as raised:
+        exporters.write(products, tmp_path / "a.step")
+    assert raised.value.kept == tmp_path / "a.too-large.step"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.too-large.step"]
+    exporters.write(products, tmp_path / "a.stl")  # the promise is about solids
+    assert (tmp_path / "a.stl").stat().st_size > 9000

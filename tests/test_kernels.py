@@ -65,7 +65,7 @@ def made(by, values, raw, target, *, edge=0.002, dtype=np.float64):
     to_space = np.broadcast_to(np.eye(3), (b, k, 3, 3)).copy()
     still = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (k, b, 4)).copy()
     given = U, values, slopes, raw, target, still, own, known, chord, to_space, sections, measures
-    by.made(*given, edge, False)
+    by.made(*given, edge / chord, False)
     return own, known, sections, measures
 
 

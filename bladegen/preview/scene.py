@@ -321,6 +321,6 @@ def caption(blade: Blade) -> str:
     bend = f", prebend {tip[0]:.2f} m" if abs(tip[0]) > 0.005 else ""
     sweep = f", sweep {tip[1]:.2f} m" if abs(tip[1]) > 0.005 else ""
     return (
-        f"{blade.length:.1f} m long, chord to {chord.max():.2f} m, twist "
+        f"{blade.length:.4g} m long, chord to {chord.max():.3g} m, twist "
         f"{twist[0]:.1f} to {twist[1]:.1f} deg{bend}{sweep}"
     )

@@ -32,6 +32,7 @@ __all__ = ["PATHS", "Blade"]
 PATHS: dict[str, PathMaker] = {"geodesic": geodesic_path, "spline": spline_path}
 RESOLVING_SPANS = 1001  # spans at which bends are looked for
 RESOLVING_LANDMARKS = 40  # landmarks that are watched for bends, about
+MIRROR = readonly([1.0, -1.0, 1.0])
 MINIMUM_EDGE = MinimumThickness(0.002, most=0.01)
 
 
@@ -71,6 +72,8 @@ class Blade(Shaped):
         Factors of the relative thickness over span (`perturbed`).
     changes : tuple of dict
         What was asked of `perturbed`, once a call.
+    mirrored : bool
+        Whether this is the mirror image in y, for rotors that turn the other way.
     """
 
     definition: BladeDefinition
@@ -88,6 +91,7 @@ class Blade(Shaped):
     deformations: tuple[Deformation, ...] = ()
     thickenings: tuple[Thickening, ...] = ()
     changes: tuple[dict[str, Any], ...] = ()
+    mirrored: bool = False
 
     def __post_init__(self) -> None:
         for field in ("u", "eta", "representatives", "M", "b"):
@@ -176,8 +180,14 @@ class Blade(Shaped):
 
     @property
     def name(self) -> str:
-        """The definition's name."""
-        return self.definition.name
+        """The definition's name, and that it is the mirror image if it is."""
+        return f"{self.definition.name}-mirrored" if self.mirrored else self.definition.name
+
+    @property
+    def sides(self) -> tuple[str, str]:
+        """What the halves of `sections` are called, from the trailing to the leading edge first."""
+        names = "suction side", "pressure side"
+        return names[::-1] if self.mirrored else names
 
     @property
     def length(self) -> float:
@@ -194,7 +204,8 @@ class Blade(Shaped):
 
     def axis(self, eta: ArrayLike) -> Array:
         """Return the reference axis (..., 3) [m] at `eta`."""
-        return self.definition.axis(eta)
+        axis = self.definition.axis(eta)
+        return axis * MIRROR if self.mirrored else axis
 
     @cached_property
     def planform(self) -> Planform:
@@ -257,12 +268,15 @@ class Blade(Shaped):
         Returns
         -------
         (..., n, 3) array
-            Landmarks [m], blade frame, trailing edge -> suction -> leading edge -> pressure.
+            Landmarks [m], blade frame, trailing edge -> suction -> leading edge -> pressure; of
+            a mirror image pressure before suction, so that they go round the same way.
         """
         spans = _spans(eta)
         flat = spans.reshape(-1)
         finished = self.trailing_edge(self.profiles(flat, u), self.chord(flat))
         placed = self.planform.place(finished, flat)
+        if self.mirrored:
+            placed = placed[:, ::-1] * MIRROR
         return placed.reshape(*spans.shape, *placed.shape[1:])
 
     def _with(self, **changes: Any) -> "Blade":
@@ -271,6 +285,13 @@ class Blade(Shaped):
     def with_trailing_edge(self, trailing_edge: TrailingEdge) -> "Blade":
         """Return the blade with another finish of its trailing edges."""
         return replace(self, trailing_edge=trailing_edge)
+
+    def mirror_image(self) -> "Blade":
+        """Return the blade mirrored in y: its trailing edge lies at -y then, its tip at z still.
+
+        Shape, planform and what is measured of them stay; `sections` and `axis` are mirrored.
+        """
+        return replace(self, mirrored=not self.mirrored)
 
     def stations(self, count: int = 120) -> Array:
         """Return span fractions that resolve shape, planform and axis.

@@ -15,9 +15,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from bladegen import __version__, cad, cad_files, checks, combs, exporters, mesh
+from bladegen import __version__, cad, cad_files, checks, combs, exporters, mesh, writers
 from bladegen.blade import Blade
-from bladegen.errors import PromiseError
+from bladegen.errors import ExportError, PromiseError
 from bladegen.files import alone, digest_of, folder, replacing, safe_stem
 from bladegen.grid_quality import grid_figures
 from bladegen.net import Deviation
@@ -94,7 +94,8 @@ def _built(
     stem = safe_stem(blade.name)
     paths = [target / f"{stem}.{suffix.lower().lstrip('.')}" for suffix in formats]
     for path in paths:
-        exporters.format_of(path)
+        if exporters.format_of(path).kind is exporters.Kind.definition and blade.mirrored:
+            raise ExportError(writers.MIRRORED)
     options = options or exporters.Options()
     products = exporters.Products(blade, options, progress)
     ledger = _Ledger(progress)
@@ -123,18 +124,8 @@ def _built(
         with ledger.timed("measuring the files"):
             _measure(report, products, exporters.format_of(path).kind, made)
     if rotor is not None:
-        report["rotor"] = asdict(rotor)
-        made = target / f"{stem}.rotor.step"
-        progress(f"writing {made.name}")
-        with ledger.timed("rotor"), replacing(made) as temporary:
-            write_step(rotor, products.solid, temporary)
-        try:
-            exporters.require_size(products, made)
-        except PromiseError as error:
-            miss, made = miss or error, error.kept or made
-        ledger.note(made)
-        with ledger.writing(target / f"{stem}.rotor.glb", "rotor") as temporary:
-            write_glb(rotor, products.mesh, temporary)
+        report["rotor"] = asdict(rotor) | {"mirrored": blade.mirrored != rotor.mirrored}
+        miss = _rotor(rotor, products, target / f"{stem}.rotor", ledger) or miss
     if any(path.suffix == ".png" for path in paths):
         with ledger.writing(target / f"{stem}.combs.png", "combs") as temporary:
             combs.draw(blade, temporary)
@@ -151,6 +142,24 @@ def _built(
     if miss is not None:
         raise miss
     return report
+
+
+def _rotor(
+    rotor: Rotor, products: exporters.Products, stem: Path, ledger: "_Ledger"
+) -> PromiseError | None:
+    """Write a rotor's two files; return what was asked of its solids and is not so."""
+    made, miss = stem.with_name(f"{stem.name}.step"), None
+    ledger.progress(f"writing {made.name}")
+    with ledger.timed("rotor"), replacing(made) as temporary:
+        write_step(rotor, products.solid, temporary)
+    try:
+        exporters.require_size(products, made)
+    except PromiseError as error:
+        miss, made = error, error.kept or made
+    ledger.note(made)
+    with ledger.writing(stem.with_name(f"{stem.name}.glb"), "rotor") as temporary:
+        write_glb(rotor, products.mesh, temporary)
+    return miss
 
 
 @dataclass(frozen=True)
@@ -245,7 +254,8 @@ def _settings(blade: Blade, options: exporters.Options) -> dict[str, Any]:
         "landmarks": len(blade.u),
         "path": blade.path.__name__,
         "section_planes": blade.planes.__name__,
-        "trailing_edge": repr(blade.trailing_edge),
+        "trailing_edge": str(blade.trailing_edge),
+        "mirrored": blade.mirrored,
         "tolerance_mm": options.tolerance * cad.MILLIMETRES,
         "solid_sections": options.sections,
         "mesh_stations": options.stations,

@@ -137,8 +137,8 @@ def solid(
         )
     progress("building the solid")
     scaled = replace(net, poles=net.poles * MILLIMETRES)
-    suction, pressure = (_surface(h.poles, h.u_knots, h.v_knots) for h in scaled.halves())
-    faces = [("suction side", _face(suction)), ("pressure side", _face(pressure))]
+    halves = [_face(_surface(h.poles, h.u_knots, h.v_knots)) for h in scaled.halves()]
+    faces = list(zip(blade.sides, halves, strict=True))
     if blunt:
         strip = np.stack([scaled.poles[-1], scaled.poles[0]])
         faces.append(("trailing edge", _face(_surface(strip, _LINEAR, net.v_knots))))

@@ -140,7 +140,12 @@ def mesh_figures(triangles: Any) -> dict[str, Any]:
 
 
 def check_blade(blade: Blade) -> Check:
-    """Hold a blade against its own definition, and look for sections that cross themselves."""
+    """Hold a blade against its own definition, and look for sections that cross themselves.
+
+    A mirror image is as good as what it is the image of.
+    """
+    if blade.mirrored:
+        return check_blade(blade.mirror_image())
     eta = np.unique(np.concatenate([np.linspace(0.0, 1.0, SPANS), blade.eta]))
     profiles = blade.profiles(eta)
     curves = SectionSplines(blade.u).fit(profiles)

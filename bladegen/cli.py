@@ -155,6 +155,15 @@ def info(blade: BladeName, airfoils: Airfoils = None, as_json: Json = False) -> 
     print_findings(figures["findings"])
 
 
+Mirror = Annotated[
+    bool,
+    typer.Option(
+        "--mirror",
+        help="The mirror image in all files: its rotor turns anticlockwise seen from upwind.",
+    ),
+]
+
+
 @app.command()
 @grouped
 def build(
@@ -167,9 +176,7 @@ def build(
     rotor: Annotated[
         bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
     ] = False,
-    mirror: Annotated[
-        bool, typer.Option("--mirror", help="A rotor that turns anticlockwise seen from upwind.")
-    ] = False,
+    mirror: Mirror = False,
     hub_radius: Annotated[
         str | None,
         typer.Option(metavar="LENGTH", help="Of the rotor, instead of the definition's; 2m."),
@@ -185,16 +192,16 @@ def build(
     """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
     options = producing.options()
     made = making.blade(blade, landmarks)
+    made = made.mirror_image() if mirror else made
     whole = None
     if not rotor and (hub_radius or precone):
         raise BladegenError("hub-radius, precone: are of the rotor; add --rotor, or leave them out")
-    if rotor or mirror:
+    if rotor:
         from bladegen.rotor import rotor_of
         from bladegen.texts import metres, radians
 
         whole = rotor_of(
             made,
-            mirrored=mirror,
             hub_radius=None if hub_radius is None else metres(hub_radius, "hub-radius"),
             cone=None if precone is None else radians(precone, "precone"),
         )
@@ -211,10 +218,12 @@ def perturb(
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
     producing: Producing = PRODUCING,
+    mirror: Mirror = False,
 ) -> None:
     """Perturb a blade consistently and build it."""
     options = producing.options()
-    _build(changes.applied(making.blade(blade, landmarks)), output, formats, options)
+    made = changes.applied(making.blade(blade, landmarks))
+    _build(made.mirror_image() if mirror else made, output, formats, options)
 
 
 def _build(

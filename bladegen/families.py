@@ -273,6 +273,11 @@ def family(
     >>> [variant.name for variant in bg.family(blade, bg.ShapeSpace.bundled(), count=2, seed=7)]
     ['dtu10mw-00000', 'dtu10mw-00001']
     """
+    if blade.mirrored:
+        raise FamilyError(
+            f"{blade.name}: families are made of the blade, not of its mirror image; mirror their "
+            "blades with mirror_image()"
+        )
     if not isinstance(design, Design):
         design = Design.of(factors(space, bounds, reach=reach), design, count, seed)
     return Family(

@@ -6,7 +6,7 @@ a core between its two halves.  The root stays open.  All points lie on `Blade.s
 the tip's own surface; normals, i cross j, point outward.  Metres, blade frame.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -199,7 +199,10 @@ def from_blade(blade: Blade, spacing: Spacing | None = None, tip: Tip = flat_tip
         blocks.append(_edge_block(sections, eta, over))
     for name, points, place in (("rim", over.rim, over.rim_u), ("core", over.core, over.core_u)):
         blocks.append(Block(f"tip {name}", "tip", points, np.ones(place.shape), place))
-    return Grid(blade.name, tuple(blocks), _interfaces(blocks, spacing), spacing)
+    joints = _interfaces(blocks, spacing)
+    for i, name in enumerate(blade.sides):
+        blocks[i] = replace(blocks[i], name=name, family=name)
+    return Grid(blade.name, tuple(blocks), joints, spacing)
 
 
 def _edge_block(sections: Array, eta: Array, over: Cap) -> Block:

@@ -316,7 +316,7 @@ def deviation(net: SurfaceNet, blade: Blade) -> Deviation:
     front, back = u <= 0.5, u >= 0.5
     sides = [
         Offsets(face, offsets[:, some].ravel(), eta[:, some].ravel(), places[:, some].ravel())
-        for face, some in (("suction side", front), ("pressure side", back))
+        for face, some in zip(blade.sides, (front, back), strict=True)
     ]
     return Deviation.of([*sides, _strip(net, points[:, [0, -1]], v)])
 

@@ -61,6 +61,8 @@ def volume(blade: Blade) -> float:
     dV/d eta = A r'.n + S1 e1'.n + S2 e2'.n.  Gauss-Legendre between the knots of all
     distributions, where everything is smooth.
     """
+    if blade.mirrored:
+        return volume(blade.mirror_image())
     definition = blade.definition
     grids = [
         quantity.grid

@@ -107,7 +107,9 @@ def _between(quantity: Distribution, eta: Array) -> Array:
 def report_rows(report: dict[str, Any]) -> list[list[str]]:
     """Return the main figures of a build report."""
     figures = report["figures"]
+    mirrored = report["settings"].get("mirrored", False)
     rows = [
+        *([["mirror image", "yes, its trailing edge lies at -y"]] if mirrored else []),
         ["length", f"{digits(figures['length_m'], 3)} m"],
         ["volume by its sections", f"{digits(figures['volume_m3'], 4)} m3"],
         ["stations missed by", f"{figures['stations_missed_by_chord']:.1e} chord"],

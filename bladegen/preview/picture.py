@@ -172,14 +172,16 @@ def _strip_view(plotter: Any, blade: Blade, view: str, size: tuple[int, int]) ->
     """Look at the blade at right angles, root at the left, over a ruler in metres."""
     length = blade.length
     across, away = (1, 0) if view == "planform" else (0, 1)
-    down = 1.0 if view == "planform" else -1.0  # y points down in one view, x up in the other
+    # y points down in one view; in the other x points up, or down where one looks from -y
+    down = 1.0 if view == "planform" or blade.mirrored else -1.0
+    behind = -1.0 if blade.mirrored and view == "side" else 1.0  # where the trailing edge lies
     seen = down * blade.sections(np.linspace(0.0, 1.0, 50))[..., across]
     base = float(seen.max()) + 0.012 * length
     middle = np.zeros(3)
     middle[across] = down * 0.5 * (float(seen.min()) - 0.012 * length + base + 0.03 * length)
     middle[2] = 0.5 * length
     eye, up = middle.copy(), np.zeros(3)
-    eye[away] += length
+    eye[away] += behind * length
     up[across] = -down
     plotter.camera_position = [eye, middle, up]
     plotter.enable_parallel_projection()

@@ -22,6 +22,12 @@ from bladegen.writers.airfoil_files import write_airfoil
 __all__ = ["FORMATS", "Format", "format_of", "prepared", "write", "write_airfoil"]
 
 
+MIRRORED = (
+    "mirror: blade definitions have y to the trailing edge, so none can hold a mirror image; leave "
+    "--mirror out, for tools that mirror a rotor take the definition of the plain blade"
+)
+
+
 @dataclass(frozen=True)
 class Format:
     """A file format.
@@ -117,6 +123,8 @@ def prepared(
     if isinstance(what, BladeDefinition):
         definition, made = what, tuple[Finding, ...]()
         policy = polars or "keep"
+    elif what.mirrored:
+        raise ExportError(MIRRORED)
     else:
         progress("giving the blade airfoils of its own")
         definition, known = redefined(what), what.definition.findings

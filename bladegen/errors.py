@@ -1,9 +1,11 @@
 """What can go wrong, and what is worth saying though nothing went wrong.
 
 Every error a user can meet is a `BladegenError`: one line that names the file, the field,
-the value and what is allowed.  A `Finding` is a remark on data that was accepted.
+the value and what is allowed.  A `Finding` is a remark on data that was accepted.  Names in them
+come from files of anybody: what would act on a terminal or hide is shown by its code.
 """
 
+import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,11 +27,35 @@ __all__ = [
     "SpaceError",
     "StudioError",
     "ToleranceError",
+    "visible",
 ]
+
+# control characters (C0, C1), those without a form of their own that turn the direction of what
+# follows or join it, halves of pairs, and marks of lines and paragraphs
+_HIDDEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
+
+
+def visible(text: str) -> str:
+    """Return a text with the characters that show nothing, but act, as their codes.
+
+    >>> print(visible("foil\\x1b[31m \\u202egnp.x"))
+    foil\\x1b[31m \\u202egnp.x
+    """
+    if text.isprintable():
+        return text
+    return "".join(
+        letter.encode("unicode_escape").decode("ascii")
+        if unicodedata.category(letter) in _HIDDEN
+        else letter
+        for letter in text
+    )
 
 
 class BladegenError(Exception):
     """The base of every error that bladegen raises on purpose."""
+
+    def __str__(self) -> str:
+        return visible(" ".join(super().__str__().split("\n")))
 
 
 class DefinitionError(BladegenError):
@@ -49,7 +75,7 @@ class FileError(BladegenError):
 
     def __init__(self, source: str, problems: Sequence[str]) -> None:
         self.source = source
-        self.problems = tuple(problems)
+        self.problems = tuple(map(visible, problems))
         count = len(self.problems)
         head = f"{source}: " if count == 1 else f"{source}: {count} problems: "
         super().__init__(head + "; ".join(self.problems))
@@ -121,6 +147,10 @@ class Finding:
 
     where: str
     message: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "where", visible(self.where))
+        object.__setattr__(self, "message", visible(self.message))
 
     def __str__(self) -> str:
         return f"{self.where}: {self.message}"

@@ -11,6 +11,7 @@ import numpy as np
 
 from bladegen.blade import Blade
 from bladegen.blade_plots import overview
+from bladegen.errors import visible
 from bladegen.tables import digits
 
 __all__ = ["blade_html"]
@@ -25,7 +26,7 @@ def blade_html(blade: Blade) -> str:
         f"<td style='text-align:left'>{html.escape(value)}</td></tr>"
         for key, value in _figures(blade).items()
     )
-    title = html.escape(blade.definition.description or blade.name)
+    title = html.escape(visible(blade.definition.description or blade.name))
     return (
         "<div style='display:flex;flex-wrap:wrap;align-items:center;gap:1.5em'>"
         f"<table><caption style='text-align:left'><b>{title}</b></caption>{rows}</table>"
@@ -40,7 +41,7 @@ def _figures(blade: Blade) -> dict[str, str]:
     tip = blade.axis(1.0)
     airfoils = dict.fromkeys(station.airfoil.name for station in blade.definition.stations)
     figures = {
-        "name": blade.name,
+        "name": visible(blade.name),
         "length": f"{digits(blade.length, 2)} m",
         "chord": f"{digits(chord[0], 2)} m at the root, {digits(chord.max(), 2)} m at most",
         "twist": f"{twist[0]:.2f} to {twist[-1]:.2f} deg",

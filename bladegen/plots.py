@@ -9,6 +9,7 @@ import numpy as np
 from bladegen import affine
 from bladegen.arrays import Array
 from bladegen.blade import Blade
+from bladegen.errors import visible
 from bladegen.files import require_suffix
 from bladegen.pga import ShapeSpace
 from bladegen.style import CATEGORIES, FAINT, INK, SEQUENTIAL
@@ -69,7 +70,7 @@ def dress(axis: Any) -> None:
 
 def titled(drawn: Any, blade: Blade, what: str, baseline: Blade | None = None) -> Any:
     """Give a figure of a blade its title; say what dashes are where no legend does."""
-    name = blade.definition.description or blade.name
+    name = visible(blade.definition.description or blade.name)
     if blade.changes:
         name += f", perturbed: {blade.name}"
     dashes = "" if baseline is None else "; baseline dashed"

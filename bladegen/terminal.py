@@ -1,4 +1,7 @@
-"""What the command line prints: tables, figures, progress.  rich is imported when needed."""
+"""What the command line prints: tables, figures, progress.  rich is imported when needed.
+
+Names come from files of anybody, so every text is shown as `errors.visible` has it.
+"""
 
 import json
 import logging
@@ -11,6 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import typer
+
+from bladegen.errors import visible
 
 __all__ = [
     "log_to_terminal",
@@ -44,7 +49,14 @@ def log_to_terminal(level: int) -> None:
     logger = logging.getLogger("bladegen")
     logger.setLevel(level)
     shown = RichHandler(console=_stderr(), show_path=False, rich_tracebacks=False)
+    shown.addFilter(_made_visible)
     logger.handlers = [*(h for h in logger.handlers if not isinstance(h, RichHandler)), shown]
+
+
+def _made_visible(record: logging.LogRecord) -> bool:
+    """Show the names in a message as `errors.visible` has them."""
+    record.msg, record.args = visible(record.getMessage()), None
+    return True
 
 
 @contextmanager
@@ -57,7 +69,7 @@ def progress_bar() -> Iterator[Any]:
     quiet = not console.is_terminal
     with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
         task = bar.add_task("starting", total=None)
-        yield lambda message: bar.update(task, description=message)
+        yield lambda message: bar.update(task, description=visible(message))
 
 
 @contextmanager
@@ -134,7 +146,7 @@ def print_findings(findings: list[str]) -> None:
         kinds.setdefault(NUMBER.sub("", CLAUSE.split(finding)[-1]), []).append(finding)
     for alike in kinds.values():
         for finding in alike[:ALIKE]:
-            typer.echo(f"note: {finding}")
+            typer.echo(f"note: {visible(finding)}")
         if len(alike) > ALIKE:
             typer.echo(f"note: and {len(alike) - ALIKE} more like the last")
 
@@ -144,7 +156,8 @@ def print_table(columns: list[str], rows: list[list[str]], title: str | None = N
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(*columns, title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    head = None if title is None else visible(title)
+    table = Table(*columns, title=head, title_justify="left", box=box.SIMPLE_HEAD)
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*map(visible, row))
     Console().print(table, markup=False, highlight=False)

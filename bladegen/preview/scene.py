@@ -12,7 +12,7 @@ import numpy as np
 from bladegen import style
 from bladegen.arrays import Array
 from bladegen.blade import Blade
-from bladegen.errors import RenderError
+from bladegen.errors import RenderError, visible
 from bladegen.mesh import TriangleMesh, surface
 from bladegen.preview.drawing import signed_distances
 
@@ -309,7 +309,7 @@ def _reach(blade: Blade) -> tuple[float, float, float]:
 
 def _title(blade: Blade) -> str:
     definition = blade.definition
-    title = definition.description or definition.name
+    title = visible(definition.description or definition.name)
     return f"{title}, perturbed: {definition.name}" if blade.changes else title
 
 

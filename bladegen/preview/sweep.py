@@ -17,7 +17,7 @@ from bladegen.arrays import Array, Indices
 from bladegen.blade import Blade
 from bladegen.deformation import RANGES
 from bladegen.designs import factors
-from bladegen.errors import ExportError, RenderError
+from bladegen.errors import ExportError, RenderError, visible
 from bladegen.files import require_suffix
 from bladegen.mesh import TriangleMesh, surface
 from bladegen.pga import ShapeSpace
@@ -233,7 +233,7 @@ class _Stage:
         actor = add_surface(self.plotter, shaded(mesh, (field,)), field, name="blade")
         if not self.plotter.scalar_bars:
             add_colour_bar(self.plotter, actor, field.label)
-        title = self.motion.blade.definition.description or self.motion.blade.name
+        title = visible(self.motion.blade.definition.description or self.motion.blade.name)
         add_words(self.plotter, f"{title}\n{words}", self._place, 12, name="words")
         self.plotter.subplot(1, 0)
         self._add_profiles(blade, style.VARIANT, 2.5, "variant")

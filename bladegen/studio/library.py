@@ -16,7 +16,7 @@ from threading import Lock
 
 from bladegen.blade import Blade
 from bladegen.definition import BladeDefinition
-from bladegen.errors import FileError, StudioError
+from bladegen.errors import FileError, StudioError, visible
 from bladegen.files import safe_stem
 from bladegen.identity import fingerprint
 from bladegen.pga import ShapeSpace
@@ -121,7 +121,7 @@ class Library:
         path = Path(definition.source)
         key = _key(path.name, path.read_bytes(), _others(path, definition))
         folder = None if airfoils is None else str(airfoils)
-        entry = Entry(key, path.name, str(path), source, folder)
+        entry = Entry(key, visible(path.name), str(path), source, folder)
         self._prepared(entry, lambda: Blade.from_definition(definition))
         self._entries[key] = entry
         return key
@@ -163,7 +163,7 @@ class Library:
                 alone = len(files) == 1 and path.suffix.lower() not in WHOLE
                 raise FileError(plain, problems + [TOGETHER] * alone) from None
             key = _key(plain, content, _others(path, definition))
-            entry = Entry(key, plain, str(self._folder / key / path.name), plain)
+            entry = Entry(key, visible(plain), str(self._folder / key / path.name), plain)
             self._prepared(entry, lambda: Blade.from_definition(definition))
             with self._lock:
                 if key in self._entries:

@@ -25,6 +25,7 @@ from bladegen.landmarks import Contour, Spacing, clustered, contour, landmark_pa
 from bladegen.planform import Planform, SectionPlanes, normal_to_axis
 from bladegen.remarks import disagreeing, opened
 from bladegen.shaping import Shaped
+from bladegen.thickness import own_thickness
 from bladegen.widths import Joining
 
 __all__ = ["PATHS", "Blade"]
@@ -43,7 +44,7 @@ class Blade(Shaped):
     Parameters
     ----------
     definition : BladeDefinition
-        Planform, axis and thickness distribution.
+        Planform, axis and thickness distribution; `thickness.own_thickness` where a file has none.
     u : (n,) array
         Landmark parameters, 0 at the suction side's trailing edge, 0.5 at the leading edge.
     eta : (s,) array
@@ -160,12 +161,22 @@ class Blade(Shaped):
         }
         shapes = {key: curve.landmarks(u) for key, curve in curves.items()}
         keys = [id(station.airfoil) for station in definition.stations]
-        X, M, b = affine.standardise(np.stack([shapes[key] for key in keys]))
+        airfoils = np.stack([shapes[key] for key in keys])
+        X, M, b = affine.standardise(airfoils)
         contours = tuple(curves[key] for key in keys)
+        eta = np.array([station.eta for station in definition.stations])
+        findings = (
+            definition.findings
+            + opened(definition, contours)
+            + disagreeing(definition, u, airfoils)
+        )
+        if definition.relative_thickness is None:
+            thickness = own_thickness(eta, u, airfoils)
+            definition = replace(definition, relative_thickness=thickness)
         return cls(
             definition=definition,
             u=u,
-            eta=np.array([station.eta for station in definition.stations]),
+            eta=eta,
             representatives=X,
             M=M,
             b=b,
@@ -173,9 +184,7 @@ class Blade(Shaped):
             planes=planes,
             trailing_edge=trailing_edge,
             contours=contours,
-            findings=definition.findings
-            + opened(definition, contours)
-            + disagreeing(definition, u, affine.restore(X, M, b)),
+            findings=findings,
         )
 
     @property

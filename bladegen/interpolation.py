@@ -21,6 +21,8 @@ from bladegen.definition import Distribution, Interpolant, pchip
 __all__ = ["GeodesicPath", "Parameter", "Path", "SectionSpline", "SplinePath"]
 
 EQUAL_THICKNESS = 1e-3  # of chord; neighbours closer than this are told apart by span instead
+STEEP = 0.05  # of chord over a whole span; nearer neighbours follow thickness too where it
+RIPPLE = 5e-5  # changes faster than this, and by more than published curves ripple
 NOISE = 1e-3  # rad; neighbours closer than this are told apart by their digits alone: no slope
 SAME_SHAPE = 1e-12  # rad; neighbours closer than this are one shape, constant between them
 
@@ -46,7 +48,9 @@ class Parameter:
         if self.relative_thickness is None:
             return self.stations, np.zeros(len(self.stations) - 1, dtype=bool)
         thickness = self.relative_thickness(self.stations)
-        return thickness, np.abs(np.diff(thickness)) > EQUAL_THICKNESS
+        steps = np.abs(np.diff(thickness))
+        steep = (steps > RIPPLE) & (steps > STEEP * np.diff(self.stations))
+        return thickness, (steps > EQUAL_THICKNESS) | steep
 
     @cached_property
     def knots(self) -> Array:

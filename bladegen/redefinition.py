@@ -30,7 +30,7 @@ from bladegen.polars import BORROWED, Polar
 if TYPE_CHECKING:
     from bladegen.blade import Blade
 
-__all__ = ["TOLERANCE", "redefined", "sampled"]
+__all__ = ["TOLERANCE", "missed", "redefined", "sampled"]
 
 TOLERANCE = 5e-4  # m: between stations, from the sections of the blade to those of the definition
 SHARE = 0.1  # of the tolerance, for each distribution
@@ -87,12 +87,24 @@ def sampled(quantity: Callable[[Array], Array], grid: Array, tolerance: float) -
     """
     while True:
         result = Distribution(grid, quantity(grid))
-        inner = grid[:-1, None] + np.diff(grid)[:, None] * BETWEEN
-        off = np.max(np.abs(result(inner) - quantity(inner)), axis=1)
+        off = _off(result, quantity)
         wide = (off > tolerance) & (np.diff(grid) > CLOSEST)
         if not wide.any() or len(grid) + np.count_nonzero(wide) > MOST_POINTS:
             return result
         grid = united(grid, (0.5 * (grid[:-1] + grid[1:]))[wide])
+
+
+def missed(made: Distribution, quantity: Callable[[Array], Array]) -> float:
+    """Return how far a sampled distribution is off a function of span, between its points."""
+    return float(_off(made, quantity).max())
+
+
+def _off(made: Distribution, quantity: Callable[[Array], Array]) -> Array:
+    """Return the largest difference in each interval of a distribution's grid."""
+    grid = made.grid
+    inner = grid[:-1, None] + np.diff(grid)[:, None] * BETWEEN
+    largest: Array = np.max(np.abs(made(inner) - quantity(inner)), axis=1)
+    return largest
 
 
 def _sampled_planform(blade: "Blade", tolerance: float) -> BladeDefinition:

@@ -30,7 +30,7 @@ def test_reference_blades_are_sound(name):
 def test_a_blade_without_thickness_distribution(blade):
     plain = bg.Blade.from_definition(replace(blade.definition, relative_thickness=None))
     figures = checks.check_blade(plain).figures
-    assert figures["thickness_error"] is None
+    assert figures["thickness_error"] < 1e-9  # the airfoils' own rules
     assert figures["stations_missed_by_chord"] < 1e-9
 
 

@@ -40,6 +40,7 @@ FLOW = [
     "widths",
     "crowding",
     "remarks",
+    "thickness",
     "pga",
     "deformation",
     "perturbation",

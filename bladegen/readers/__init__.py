@@ -10,11 +10,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from bladegen.definition import BladeDefinition
-from bladegen.errors import DefinitionError, FileError
+from bladegen.errors import DefinitionError, FileError, Finding
 from bladegen.readers import hawc2, numad, openfast, spanwise_table, turbine_file
 from bladegen.readers.document import Notes
 
 __all__ = ["FORMATS", "SUFFIXES", "Format", "bundled", "holds_blade", "read"]
+
+BY_AIRFOILS = Finding(
+    "relative thickness", "is not given over span; it is that of the airfoils, PCHIP between them"
+)
 
 
 @dataclass(frozen=True)
@@ -92,6 +96,8 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
         raise FileError(str(source), error.problems) from None
     if definition is None or notes.problems:
         raise FileError(str(source), notes.shown())
+    if definition.relative_thickness is None:
+        definition = replace(definition, findings=(*definition.findings, BY_AIRFOILS))
     return replace(definition, format=definition.format or row.name)
 
 

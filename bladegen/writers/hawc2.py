@@ -12,20 +12,18 @@ from pathlib import Path
 import numpy as np
 
 from bladegen.arrays import Array
-from bladegen.blade import Blade
 from bladegen.blending import without_polars
 from bladegen.conventions import curve_length, line_of_axis
-from bladegen.definition import THICKNESS_RIPPLE, Airfoil, BladeDefinition, Station
+from bladegen.definition import THICKNESS_RIPPLE, BladeDefinition, Station
 from bladegen.errors import Finding
 from bladegen.readers.hawc2 import AE_SUFFIX, HALF, PC_SUFFIX
-from bladegen.resampling import common_grid, shape_grid
+from bladegen.resampling import common_grid
+from bladegen.thickness import ruled
 from bladegen.writers.airfoil_folder import write_airfoils
 from bladegen.writers.hawc2_polars import Sets, profile_sets
 from bladegen.writers.text import aligned, exact, few, write_lines
 
 __all__ = ["parts", "write"]
-
-LANDMARKS = 401
 
 
 def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
@@ -40,19 +38,22 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
 
 def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Finding, ...]]:
     """Write the files that the htc part at `path` names; return its lines, and the findings."""
+    definition = ruled(definition)
+    stations, thickness = definition.stations, definition.relative_thickness
+    assert thickness is not None  # it rules
     eta, loss = common_grid(definition, over_z=True)
-    eta, rthick, stations = _shapes(definition, eta)
+    rthick = thickness(eta)
     chord, twist, axis = definition.chord(eta), definition.twist(eta), definition.axis(eta)
     behind, aside = definition.offset_y(eta), definition.offset_x(eta)
     x, y = line_of_axis(axis[:, 0], axis[:, 1], chord, twist, behind, HALF)
     x, y, z = x + aside * np.cos(twist), y - aside * np.sin(twist), axis[:, 2]
     spans, lengths = curve_length(-y, x, z)
     at = {s.eta: float(np.interp(s.eta, eta, rthick)) for s in stations}
-    thickness = {id(s.airfoil): at[s.eta] for s in reversed(stations)}
+    own = {id(s.airfoil): at[s.eta] for s in reversed(stations)}
     whole = z[-1] - z[0]
     along = [float((definition.axis.z(s.eta) - z[0]) / whole) for s in stations]
     placed = [Station(share, s.airfoil) for share, s in zip(along, stations, strict=True)]
-    folder = write_airfoils(path, placed, placed=True, thickness=thickness)
+    folder = write_airfoils(path, placed, placed=True, thickness=own)
     radius = np.interp(z, spans, lengths)
     ae = path.with_name(f"{path.stem}{AE_SUFFIX}")
     sets = profile_sets(definition, [(s.eta, s.airfoil.name) for s in stations], eta, rthick)
@@ -75,25 +76,6 @@ def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Fin
         *_polar_findings(definition, stations, at, sets, pc.name),
     ]
     return lines, (*found, *_findings(definition))
-
-
-def _shapes(definition: BladeDefinition, eta: Array) -> tuple[Array, Array, tuple[Station, ...]]:
-    """Return the grid, the thickness there, and airfoils that this thickness blends rightly.
-
-    Between airfoils, shape follows thickness once there is a distribution of it; where the
-    definition has none, its sections are written at the whole grid instead of its stations.
-    """
-    if definition.relative_thickness is not None:
-        return eta, definition.relative_thickness(eta), definition.stations
-    blade = Blade.from_definition(definition, landmarks=LANDMARKS)
-    eta = shape_grid(blade, eta)
-    names = {station.eta: station.airfoil.name for station in definition.stations}
-    sections = blade.profiles(eta)
-    stations = [
-        Station(at, Airfoil(names.get(at, f"section at eta = {at:.5f}"), points))
-        for at, points in zip(eta.tolist(), sections, strict=True)
-    ]
-    return eta, blade.splines.fit(sections).relative_thickness, tuple(stations)
 
 
 def _htc(

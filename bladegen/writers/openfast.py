@@ -26,6 +26,7 @@ from bladegen.readers.airfoil_folder import companion
 from bladegen.readers.openfast import TWIST_SUFFIX
 from bladegen.readers.openfast_model import PART_SUFFIX
 from bladegen.resampling import common_grid, shape_grid
+from bladegen.thickness import ruled
 from bladegen.writers.airfoil_info import Tables, info, part, tables_at
 from bladegen.writers.text import aligned, few, write_lines
 
@@ -55,6 +56,7 @@ def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Fin
 
     Returns these lines, none without polars, and what the files cannot hold.
     """
+    given, definition = definition, ruled(definition)
     eta, loss = common_grid(definition, TOLERANCE, over_z=True)
     blade = Blade.from_definition(definition, landmarks=LANDMARKS)
     eta = shape_grid(blade, eta)
@@ -94,7 +96,7 @@ def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Fin
         lines = part(path.name, listed, most, definition.rotor.blades)
     write_lines(path.with_name(f"{path.stem}{TWIST_SUFFIX}"), _twist(definition, eta))
     write_lines(path, _blade(definition, eta, ids, reference))
-    found = _findings(definition, len(eta), int(ids[-1]), loss, airfoils.name)
+    found = _findings(given, len(eta), int(ids[-1]), loss, airfoils.name)
     listing = f"{path.stem}{PART_SUFFIX}"
     return lines, (*found, *_polar_findings(definition, tables, listing))
 

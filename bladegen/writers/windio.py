@@ -13,11 +13,14 @@ import numpy as np
 import yaml
 
 from bladegen.arrays import Array
-from bladegen.definition import Airfoil, BladeDefinition, Distribution, Station
+from bladegen.blade import Blade
+from bladegen.definition import Airfoil, BladeDefinition, Distribution, Station, united
 from bladegen.errors import Finding
 from bladegen.files import replacing
+from bladegen.redefinition import sampled
 
 __all__ = [
+    "OFFSET",
     "Document",
     "Note",
     "airfoil_entries",
@@ -28,13 +31,15 @@ __all__ = [
     "thickness",
     "turbine",
     "uniquely_named",
+    "within",
     "write",
 ]
 
 Document = dict[str, Any]
 Note = Callable[[str, str], None]
 LINE = 100
-NEGLIGIBLE = 1e-5  # chords by which an airfoil may move without a word
+OFFSET = 5e-7  # m, by which a sampled offset may be off
+MOVED = 2e-5  # m, the same where it takes up what airfoils were moved
 _DUMPER: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 
@@ -75,7 +80,7 @@ def uniquely_named(stations: Iterable[Station]) -> tuple[Station, ...]:
 
 
 def airfoil_entries(
-    stations: Iterable[Station], key: str, note: Note, polars: Callable[[Airfoil], list[Document]]
+    stations: Iterable[Station], key: str, polars: Callable[[Airfoil], list[Document]]
 ) -> list[Document]:
     """Return the file's list of airfoils, each once.
 
@@ -85,21 +90,16 @@ def airfoil_entries(
         Their airfoils differ in name if they differ.
     key : str
         Where the thickness is stated.
-    note : callable
-        Told what had to be changed.
     polars : callable
         From an airfoil to the version's list of polars.
     """
     airfoils = {station.airfoil.name: station.airfoil for station in stations}
     entries = []
-    scales: dict[str, float] = {}
     for airfoil in airfoils.values():
-        points, scale = _within(airfoil.coordinates)
-        if scale is not None:
-            scales[airfoil.name] = scale
+        x, y = airfoil.coordinates.T
         entry: Document = {
             "name": airfoil.name,
-            "coordinates": {"x": points[:, 0].tolist(), "y": points[:, 1].tolist()},
+            "coordinates": {"x": x.tolist(), "y": y.tolist()},
         }
         stated = airfoil.relative_thickness
         if stated is not None:
@@ -109,14 +109,68 @@ def airfoil_entries(
         if airfoil.polars:
             entry["polars"] = polars(airfoil)
         entries.append(entry)
-    if scales:
-        most = max(scales, key=lambda name: scales[name])
-        note(
-            "airfoils",
-            f"{len(scales)} with x outside of 0 to 1, which windIO does not allow: moved to 0 and "
-            f"divided by up to {scales[most]:.6f} ({most}), and so moved along their chords",
-        )
     return entries
+
+
+def within(definition: BladeDefinition, note: Note) -> BladeDefinition:
+    """Return the same blade with airfoils whose x lies within windIO's 0 to 1.
+
+    They are moved along their chords and made smaller where that takes it; the blade has unit
+    chords anyway, and the offset along the chord takes up the move.
+    """
+    moved: dict[int, Airfoil] = {}
+    most = 0.0
+    for station in definition.stations:
+        points = station.airfoil.coordinates
+        low, high = min(float(points[:, 0].min()), 0.0), float(points[:, 0].max())
+        if low < 0.0 or high > 1.0:
+            fitted = (points - [low, 0.0]) / max(high - low, 1.0)
+            fitted[:, 0] = np.clip(fitted[:, 0], 0.0, 1.0)  # rounding
+            moved[id(station.airfoil)] = replace(station.airfoil, coordinates=fitted)
+            most = max(most, -low, high - 1.0)
+    if not moved:
+        return definition
+    result = replace(
+        definition,
+        stations=tuple(
+            Station(station.eta, moved.get(id(station.airfoil), station.airfoil))
+            for station in definition.stations
+        ),
+    )
+    note(
+        "airfoils",
+        f"{len(moved)} with x up to {most:.2g} outside of 0 to 1, which windIO does not allow: "
+        "moved along their chords and scaled; the offset along the chord takes it up",
+    )
+    shift = _shift(Blade.from_definition(definition), Blade.from_definition(result))
+    stations = [station.eta for station in definition.stations]
+    offset, pitch, chord = definition.section_offset_y, definition.pitch_axis, definition.chord
+    if pitch is not None:
+        share = MOVED / float(chord.values.max())
+        made = sampled(lambda eta: pitch(eta) + shift(eta), united(pitch.grid, stations), share)
+        return replace(result, pitch_axis=made)
+    assert offset is not None  # a definition has one of both
+    grid = united(offset.grid, chord.grid, stations)
+    made = sampled(lambda eta: offset(eta) + chord(eta) * shift(eta), grid, MOVED)
+    return replace(result, section_offset_y=made)
+
+
+def _shift(before: Blade, after: Blade) -> Callable[[Array], Array]:
+    """Return by how much sections of one blade lie behind another's, in chords, over span.
+
+    Sections are the same but for this; each place is looked at once.
+    """
+    known: dict[float, float] = {}
+
+    def shift(eta: Array) -> Array:
+        places = [place for place in eta.reshape(-1).tolist() if place not in known]
+        if places:
+            new = np.array(places)
+            by = after.profiles(new)[..., 0] - before.profiles(new)[..., 0]
+            known.update(zip(places, by.mean(axis=-1).tolist(), strict=True))
+        return np.array([known[place] for place in eta.reshape(-1).tolist()]).reshape(eta.shape)
+
+    return shift
 
 
 def curve(alpha: Array, values: Array) -> Document:
@@ -176,19 +230,3 @@ def _alike(one: Airfoil, other: Airfoil) -> bool:
         and np.array_equal(one.coordinates, other.coordinates)
         and one.polars is other.polars
     )
-
-
-def _within(points: Array) -> tuple[Array, float | None]:
-    """Return points with x within windIO's 0 to 1, by a shift and a scale where it takes them.
-
-    The scale is given if it or the shift is worth a word.
-    """
-    low, high = points[:, 0].min(), points[:, 0].max()
-    if low >= 0.0 and high <= 1.0:
-        return points, None
-    low = min(float(low), 0.0)
-    scale = max(float(high) - low, 1.0)
-    told = scale if max(-low, scale - 1.0) > NEGLIGIBLE else None
-    moved = (points - [low, 0.0]) / scale
-    moved[:, 0] = np.clip(moved[:, 0], 0.0, 1.0)  # rounding
-    return moved, told

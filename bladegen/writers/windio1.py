@@ -7,17 +7,16 @@ import numpy as np
 
 from bladegen.arrays import Array
 from bladegen.definition import Airfoil, BladeDefinition, Distribution, united
-from bladegen.redefinition import sampled
+from bladegen.redefinition import missed, sampled
 from bladegen.writers import windio
 from bladegen.writers.windio import Document, Note
 
 __all__ = ["document", "outer_shape", "polars", "write"]
 
-FRACTION = 1e-6  # of the chord, by which a sampled pitch axis may be off
-
 
 def document(definition: BladeDefinition, note: Note) -> Document:
     """Return a turbine document that holds what a definition says."""
+    definition = windio.within(definition, note)
     stations = windio.uniquely_named(definition.stations)
     rotor = definition.rotor
     named = replace(definition, stations=stations)
@@ -33,7 +32,7 @@ def document(definition: BladeDefinition, note: Note) -> Document:
         components["hub"] = hub
     if rotor.tilt is not None:
         components["nacelle"] = {"drivetrain": {"uptilt": rotor.tilt}}
-    entries = windio.airfoil_entries(stations, "relative_thickness", note, polars)
+    entries = windio.airfoil_entries(stations, "relative_thickness", polars)
     return windio.turbine(definition, "1.0", components, entries)
 
 
@@ -78,15 +77,17 @@ def _pitch_axis(definition: BladeDefinition, note: Note) -> Distribution:
         return definition.pitch_axis
     assert definition.section_offset_y is not None  # a definition has one of both
     grid = united(definition.section_offset_y.grid, definition.chord.grid)
-    note(
-        "pitch_axis",
-        f"section_offset_y over chord, sampled to within {FRACTION:g} chord of the quotient",
-    )
 
     def fraction(eta: Array) -> Array:
         return definition.offset_y(eta) / definition.chord(eta)
 
-    return sampled(fraction, grid, FRACTION)
+    made = sampled(fraction, grid, windio.OFFSET / float(definition.chord.values.max()))
+    note(
+        "pitch_axis",
+        f"section_offset_y over chord at {len(made.grid)} points, within "
+        f"{missed(made, fraction):.1g} chord of the quotient",
+    )
+    return made
 
 
 write = partial(windio.write, version="1", document=document)

@@ -5,9 +5,9 @@ from functools import partial
 
 import numpy as np
 
-from bladegen.blade import Blade
 from bladegen.definition import Airfoil, BladeDefinition, Distribution, Rotor, Station, united
-from bladegen.redefinition import sampled
+from bladegen.redefinition import missed, sampled
+from bladegen.thickness import ruled
 from bladegen.writers import windio
 from bladegen.writers.windio import Document, Note
 
@@ -15,13 +15,12 @@ __all__ = ["blade", "document", "polars", "write"]
 
 DEGREES = 180.0 / np.pi
 DIGITS = 12  # of angles in degrees, so that those of a file in degrees come back
-OFFSET = 1e-5  # m, by which a sampled offset may be off
 NOT_HELD = frozenset({"b5"})  # of AeroDyn's constants for unsteady aerodynamics
-RATIO = 1e-5  # by which a sampled relative thickness may be off
 
 
 def document(definition: BladeDefinition, note: Note) -> Document:
     """Return a turbine document that holds what a definition says."""
+    definition = windio.within(definition, note)
     stations = windio.uniquely_named(definition.stations)
     rotor = definition.rotor
     components: Document = {"blade": blade(replace(definition, stations=stations), note)}
@@ -30,7 +29,7 @@ def document(definition: BladeDefinition, note: Note) -> Document:
         components["hub"] = hub
     if rotor.tilt is not None:
         components["drivetrain"] = {"outer_shape": {"uptilt": DEGREES * rotor.tilt}}
-    entries = windio.airfoil_entries(stations, "rthick", note, polars)
+    entries = windio.airfoil_entries(stations, "rthick", polars)
     return windio.turbine(definition, "2.0", components, entries)
 
 
@@ -52,7 +51,10 @@ def _hub(rotor: Rotor, note: Note) -> Document:
 
 def blade(definition: BladeDefinition, note: Note) -> Document:
     """Return the reference axis and the outer shape."""
-    thickness = definition.relative_thickness or _measured(definition, note)
+    if definition.relative_thickness is None:
+        note("rthick", "windIO 2 must have one; that of the airfoils, PCHIP over span, is written")
+    thickness = ruled(definition).relative_thickness
+    assert thickness is not None  # it rules
     shape: Document = {
         "airfoils": [_scheduled(station) for station in definition.stations],
         "chord": windio.pairs(definition.chord),
@@ -94,18 +96,13 @@ def _offset(definition: BladeDefinition, note: Note) -> Distribution:
         return definition.section_offset_y
     assert definition.pitch_axis is not None  # a definition has one of both
     grid = united(definition.pitch_axis.grid, definition.chord.grid)
+    made = sampled(definition.offset_y, grid, windio.OFFSET)
+    off = missed(made, definition.offset_y)
     note(
         "section_offset_y",
-        f"pitch axis times chord, sampled to within {1e3 * OFFSET:g} mm of the product",
+        f"pitch axis times chord at {len(made.grid)} points, within {off:.1g} m of the product",
     )
-    return sampled(definition.offset_y, grid, OFFSET)
-
-
-def _measured(definition: BladeDefinition, note: Note) -> Distribution:
-    note("rthick", "windIO 2 must have one; measured on the sections between the airfoils")
-    made = Blade.from_definition(definition)
-    eta = united([0.0, 1.0], made.eta)
-    return sampled(made.relative_thickness, eta, RATIO)
+    return made
 
 
 write = partial(windio.write, version="2", document=document)

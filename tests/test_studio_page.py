@@ -22,7 +22,7 @@ from bladegen.studio.page import Page
 from bladegen.studio.server import serve
 from bladegen.studio.worker import Worker
 
-WAIT = 120_000  # ms; far more than is needed, for machines that are busy
+WAIT = 600_000  # ms; far more than is needed, for machines that are busy
 FLAGS = [
     f"--{flag}"
     for flag in (
@@ -54,7 +54,7 @@ def address():
     assert ready.wait(WAIT / 1000)
     yield served[0].address
     served[0].stop()
-    thread.join(30)
+    thread.join(WAIT / 1000)
     assert not thread.is_alive()
 
 

@@ -84,15 +84,15 @@ def test_a_studio_elsewhere_needs_its_token_and_leaves_nothing_behind(tmp_path):
         port = address.split(":")[2].split("/")[0]
         plain = f"http://127.0.0.1:{port}/"
         with pytest.raises(urllib.error.HTTPError, match="403"):
-            urllib.request.urlopen(plain, timeout=60)
+            urllib.request.urlopen(plain, timeout=600)
         browser = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
-        with browser.open(f"{plain}?{address.split('?')[1]}", timeout=60) as answer:
+        with browser.open(f"{plain}?{address.split('?')[1]}", timeout=600) as answer:
             assert answer.url == plain
             assert b"bladegen studio" in answer.read()
-        assert browser.open(plain, timeout=60).status == 200
+        assert browser.open(plain, timeout=600).status == 200
         assert len(list((tmp_path / "temporary").glob("bladegen-studio-*"))) == 1
     finally:
         process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=60)
+        process.communicate(timeout=600)
     assert not list((tmp_path / "temporary").iterdir())
     assert not list((tmp_path / "here").iterdir())

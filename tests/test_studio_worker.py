@@ -1,9 +1,13 @@
 import os
 import signal
+import subprocess
+import sys
+import time
 from concurrent.futures.process import BrokenProcessPool
 from zipfile import ZipFile
 
 import pytest
+from processes import gone_within, running
 from test_readers_tables import TABLE, airfoils
 
 from bladegen import checks
@@ -12,6 +16,15 @@ from bladegen.exporters import FORMATS, Format, Kind
 from bladegen.studio.state import State
 from bladegen.studio.worker import Job, Worker, formats, make
 
+LONG = 600.0  # s; far more than is needed, for machines that are busy
+STUDIO = """
+import os, time
+from bladegen.studio.worker import Worker
+
+if __name__ == "__main__":
+    print(Worker().begin().submit(os.getpid).result(), flush=True)
+    time.sleep(3600)
+"""
 MOVED = State("nrel5mw", (0.03, -0.02, 0.01, 0.005), thickness=1.05)
 
 
@@ -75,14 +88,28 @@ def test_a_process_that_died_is_replaced(tmp_path):
     worker = Worker()
     try:
         pool = worker.begin()
-        victim = pool.submit(os.getpid).result(timeout=120)
+        victim = pool.submit(os.getpid).result(timeout=LONG)
         os.kill(victim, signal.SIGKILL)
         with pytest.raises(BrokenProcessPool):
-            pool.submit(os.getpid).result(timeout=120)
-        made = worker.submit(Job("nrel5mw", MOVED, ".stl", str(tmp_path))).result(timeout=240)
+            pool.submit(os.getpid).result(timeout=LONG)
+        made = worker.submit(Job("nrel5mw", MOVED, ".stl", str(tmp_path))).result(timeout=LONG)
         assert made.path.endswith(".stl")
         with pytest.raises(StudioError, match="neither a bundled blade"):
-            worker.submit(Job("gone", MOVED, ".stl", str(tmp_path))).result(timeout=120)
+            worker.submit(Job("gone", MOVED, ".stl", str(tmp_path))).result(timeout=LONG)
+        last = worker.begin().submit(os.getpid).result(timeout=LONG)
+        worker.begin().submit(time.sleep, 3600)
     finally:
         worker.end()
         worker.end()
+    assert gone_within(LONG, [last])
+
+
+def test_a_process_ends_with_its_killed_studio(tmp_path):
+    script = tmp_path / "studio.py"
+    script.write_text(STUDIO)
+    with subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE) as studio:
+        maker = int(studio.stdout.readline())
+        assert running(maker)
+        studio.kill()
+        assert gone_within(LONG, [maker])
+        assert studio.stdout.read() == b""  # nobody holds the pipe any more

@@ -4,11 +4,13 @@ A job says everything that the other process needs; what it is doing it writes i
 text file, which the page reads while it waits.
 """
 
+import os
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from functools import lru_cache
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile
 
@@ -125,12 +127,15 @@ class Worker:
 
     def __init__(self) -> None:
         self._pool: ProcessPoolExecutor | None = None
+        self._processes: set[BaseProcess] = set()
 
     def begin(self) -> ProcessPoolExecutor:
         """Start the process, if it is not there, and let it load what it will need."""
         if self._pool is None:
+            others = set(active_children())
             self._pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
-            self._pool.submit(_load)
+            self._pool.submit(_load, os.getpid())
+            self._processes = set(active_children()) - others
         return self._pool
 
     def submit(self, job: Job) -> "Future[Made]":
@@ -142,14 +147,20 @@ class Worker:
             return self.begin().submit(make, job)
 
     def end(self) -> None:
-        """Stop the process once it has made what it is making."""
+        """Stop the process, whatever it is making: nobody waits for it any more."""
         if self._pool is not None:
             self._pool.shutdown(wait=False, cancel_futures=True)
             self._pool = None
+        for process in self._processes:
+            process.terminate()
+        self._processes = set()
 
 
-def _load() -> None:
+def _load(parent: int) -> None:
     """Import what is slow to import; leave the other processors to the page."""
+    from bladegen.orphans import end_with
+
+    end_with(parent)
     import cadquery  # noqa: F401
     from threadpoolctl import threadpool_limits
 

@@ -559,3 +559,195 @@ def test_a_workbook_with_a_broken_directory_is_refused(tmp_path):
     content[-6:-2] = (2**32 - 9).to_bytes(4, "little")  # where the directory begins
     path.write_bytes(content)
     assert problems(path)
+
+
+def numad_stations() -> dict[str, list[list[object]]]:
+    """A small blade in the layout of the older NuMAD workbooks."""
+    titles = ["Sta.#", "Blade span (m)", "Airfoil Shape File", "TE Type", "Twist (deg)", "Chord"]
+    titles += ["xoffset", "aero center", "Section Label", "GELCOAT"]
+    return {
+        "Materials": [["x"]],
+        "Geometry": [
+            ["mini", None, None, None, "# Shear webs ->", 1],
+            [None, None, None, None, None, None, "# of segments ->", 2],
+            titles,
+            [1, 0, "circular", "round", 9, 0.8, 0.5, 0.5, "root", 1],
+            [2, 1.5, "interp", "round", 8, None, None, None, None, None],
+            [3, 4, "naca", "sharp", 6, 1.1, 0.35, 0.25, "max chord", None],
+            [4, 12, "naca.txt", "flat", 0, 0.4, 0.3, 0.25, "tip", None],
+            [None, None, "a remark"],
+        ],
+    }
+
+
+def test_older_workbooks_of_numad_are_read(tmp_path):
+    airfoils(tmp_path / "airfoils")
+    made = bg.read(sheets(tmp_path / "b.xlsx", numad_stations()))
+    assert made.format == "NuMAD"
+    assert_allclose(made.axis([0, 1 / 3, 1]), [[0, 0, 0], [0, 0, 4], [0, 0, 12]], atol=1e-12)
+    assert_allclose(np.degrees(made.twist.values), [9, 8, 6, 0])
+    assert_allclose(made.chord.values, [0.8, 1.1, 0.4])
+    assert_allclose(made.pitch_axis.values, [0.5, 0.35, 0.3])
+    assert [(s.eta, s.airfoil.name) for s in made.stations] == [
+        (0, "circular"),
+        (1 / 3, "naca"),
+        (1, "naca"),
+    ]
+    x, y = made.stations[0].airfoil.coordinates.T
+    assert_allclose(np.hypot(x - 0.5, y), 0.5, atol=1e-15)
+    said = findings(made)
+    assert "circular: is not in airfoils; NuMAD's circle of that name is taken" in said
+    assert "1 stations are interp" in said
+
+
+def test_bend_and_sweep_of_older_workbooks_are_read(tmp_path):
+    airfoils(tmp_path / "airfoils")
+    content = numad_stations()
+    content["Bend & Sweep"] = [
+        ["Pre-Bend", "method ->", "shear", "Sweep", "method ->", "normal"],
+        [None, "type ->", "poly", None, "type ->", "poly"],
+        ["span", "disp", "slope", "span", "disp", "slope"],
+        [0, 0, None, 0, 0, None],
+        [12, -0.5, None, 12, 0.2, None],
+    ]
+    made = bg.read(sheets(tmp_path / "b.xlsx", content))
+    assert_allclose(made.axis(1.0), [-0.5, 0.2, 12])
+    assert "sections stand parallel (shear) there" in findings(made)
+
+
+@pytest.mark.parametrize(
+    ("row", "column", "value", "said"),
+    [
+        (4, 5, -1, "row 5, Chord: got -1"),
+        (5, 1, 0, "row 6, Blade span (m): got 0 after 1.5, must increase"),
+        (5, 2, "nasa", "airfoil 'nasa': airfoils holds"),
+        (3, 1, None, "holds 0 stations with a span"),
+    ],
+)
+def test_older_workbooks_of_numad_tell_what_is_wrong(tmp_path, row, column, value, said):
+    airfoils(tmp_path / "airfoils")
+    content = numad_stations()
+    content["Geometry"][row][column] = value
+    assert said in problems(sheets(tmp_path / "b.xlsx", content))
+
+
+def project(**changes: str) -> str:
+    """A small project of NuMAD: a circle listed without its last point, and an airfoil twice."""
+    parts = {
+        "rotation": "<rotation>cw</rotation>",
+        "presweep": "<presweep>\n<method>normal</method>\n<table>\n0 0 0\n</table>\n</presweep>",
+        "precurve": "<precurve>\n<method>shear</method>\n<table>\n"
+        "0 0 NaN\n6 -0.1 NaN\n12 -0.5 NaN\n</table>\n<pptype>spline</pptype>\n</precurve>",
+    } | changes
+    stations = []
+    shapes_ = {"circular": circle()[:-1], "foil": naca(0.18, 0.02, 0.0)[:-1]}
+    for name, z, twist, chord in (
+        ("circular", 0, 9, 0.8),
+        ("foil", 4, 6, 1.1),
+        ("foil", 12, 0, 0.4),
+    ):
+        rows = "\n".join(f" {x:.7f} {y:.7f}" for x, y in shapes_[name])
+        stations.append(
+            f"<station>\n<airfoilname>{name}</airfoilname>\n<tetype>round</tetype>\n"
+            f"<degreestwist>{twist}</degreestwist>\n<locationz>{z}</locationz>\n"
+            f"<xoffset>0.4</xoffset>\n<chord>{chord}</chord>\n<coords>\n{rows}\n</coords>\n"
+            "<surfacematerial>\n**UNSPECIFIED**\n</surfacematerial>\n</station>"
+        )
+    return "\n".join(
+        ['<numad release="v2.0.1">', "<blade>", *parts.values(), *stations, "</blade>", "</numad>"]
+    )
+
+
+def test_projects_of_numad_are_read(tmp_path):
+    path = tmp_path / "b.nmd"
+    path.write_text(project())
+    made = bg.read(path)
+    assert made.format == "NuMAD"
+    assert_allclose(made.axis([0, 1]), [[0, 0, 0], [-0.5, 0, 12]], atol=1e-15)
+    assert_allclose(np.degrees(made.twist.values), [9, 6, 0])
+    assert_allclose(made.chord.values, [0.8, 1.1, 0.4])
+    assert_allclose(made.pitch_axis.values, 0.4)
+    assert [s.airfoil.name for s in made.stations] == ["circular", "foil", "foil"]
+    for station, points in zip(made.stations, (circle(), naca(0.18, 0.02, 0.0)), strict=False):
+        assert_allclose(station.airfoil.coordinates, points, atol=1e-7)
+    said = findings(made)
+    assert "foil: the edge point (1, 0) is listed once" in said
+    assert "sections stand parallel (shear) there; --planes z" in said
+
+
+def test_projects_of_numad_tell_what_is_wrong(tmp_path):
+    path = tmp_path / "b.nmd"
+    path.write_text(project(rotation="<rotation>ccw</rotation>"))
+    assert "ccw: read as cw" in findings(bg.read(path))
+    text = project()
+    line = text.splitlines().index(" 1.0000000 0.0000000")
+    path.write_text(text.replace(" 1.0000000 0.0000000\n", " 1.0000000 0.0000000\n 0.9x 0.1\n", 1))
+    assert f"circular: line {line + 2}: got '0.9x 0.1', must be x and y" in problems(path)
+    for old, new, said in (
+        ("<chord>1.1<", "<chord>wide<", "Chord: got 'wide'"),
+        ("<locationz>4<", "<locationz>0<", "must increase"),
+        ("<station>", "<part>", "<station>: 0 of them"),
+        ("6 -0.1 NaN", "0 -0.1 NaN", "precurve: must hold rows of span, which increases"),
+    ):
+        path.write_text(text.replace(old, new))
+        assert said in problems(path)
+
+
+QBLADE = """-----------------QBlade Blade Definition File---------------
+Generated with : QBlade
+Archive Format: 310002
+
+-----------------Object Name--------------------------------
+A_small_blade              OBJECTNAME         - the name of the blade object
+
+-----------------Parameters---------------------------------
+HAWT                       ROTORTYPE          - the rotor type
+2                          NUMBLADES          - number of blades
+
+-----------------Blade Data---------------------------------
+POS [m]    CHORD [m]   TWIST [deg]  OFFSET_X [m]  OFFSET_Y [m]  TAXIS [-]  POLAR_FILE
+1.5        1.0         12.0         0.0           0.0           0.5        circle_Re3.plr
+5.5        1.5         6.0          0.2           0.02          0.5        Polars/first.plr
+21.5       0.5         0.0          0.1           -0.3          0.25       naca_MultiRePolar.plr
+
+-----------------BDAMAGE Data-------------------------------
+"""
+
+
+@pytest.mark.parametrize("place", ["Airfoils", "."])
+def test_blades_of_qblade_are_read(tmp_path, place):
+    for file in airfoils(tmp_path / place).glob("*.dat"):
+        file.rename(file.with_suffix(".afl"))
+    (tmp_path / "Polars").mkdir()
+    (tmp_path / "Polars" / "first.plr").write_text("Airfoils/naca.afl  FOILNAME - the airfoil\n")
+    path = tmp_path / "b.bld"
+    for old, new in ((" [", "_["), ("TAXIS", "P_AXIS"), ("x", "x")):  # as other releases name them
+        path.write_text(QBLADE.replace(old, new))
+        made = bg.read(path)
+        assert made.format == "QBlade"
+        assert made.description == "A small blade"
+        assert (made.rotor.blades, made.rotor.hub_radius) == (2, 1.5)
+        assert_allclose(made.axis.z.values, [0, 4, 20])
+        assert_allclose(made.axis.y.values, [0, 0.2, 0.1])  # toward the trailing edge
+        assert_allclose(made.axis.x.values, [0, 0.02, -0.3])  # downwind
+        assert_allclose(np.degrees(made.twist.values), [12, 6, 0])
+        assert_allclose(made.pitch_axis.values, [0.5, 0.5, 0.25])
+        assert [s.airfoil.name for s in made.stations] == ["circle", "naca", "naca"]
+        assert "taken as the hub radius" in findings(made)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("HAWT", "VAWT", "ROTORTYPE: got VAWT, allowed is HAWT"),
+        ("1.5         6.0", "wide        6.0", "line 15, CHORD: got 'wide', must be a number"),
+        ("5.5    ", "0.5    ", "z: got -1 after 0, must increase"),
+        ("0.5        circle_Re3.plr", "", "line 14: must hold 7 entries"),
+        ("circle_Re3.plr", "disk.plr", "airfoil 'disk': airfoils holds circle, naca"),
+    ],
+)
+def test_blades_of_qblade_tell_what_is_wrong(tmp_path, old, new, said):
+    airfoils(tmp_path / "airfoils")
+    path = tmp_path / "b.bld"
+    path.write_text(QBLADE.replace("Polars/first", "naca").replace(old, new))
+    assert said in problems(path)

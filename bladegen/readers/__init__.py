@@ -11,7 +11,7 @@ from pathlib import Path
 
 from bladegen.definition import BladeDefinition
 from bladegen.errors import DefinitionError, FileError, Finding
-from bladegen.readers import hawc2, numad, openfast, spanwise_table, turbine_file
+from bladegen.readers import hawc2, numad, openfast, qblade, spanwise_table, turbine_file
 from bladegen.readers.document import Notes
 
 __all__ = ["FORMATS", "SUFFIXES", "Format", "bundled", "holds_blade", "read"]
@@ -58,6 +58,7 @@ FORMATS = (
     ),
     Format("OpenFAST", openfast.MARK, openfast.SUFFIXES, openfast.recognises, openfast.read),
     Format("HAWC2", hawc2.MARK, hawc2.SUFFIXES, hawc2.recognises, hawc2.read),
+    Format("QBlade", qblade.MARK, qblade.SUFFIXES, qblade.recognises, qblade.read),
     Format("NuMAD", numad.MARK, numad.SUFFIXES, numad.recognises, numad.read),
     Format(
         "spanwise table",

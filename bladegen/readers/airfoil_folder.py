@@ -28,6 +28,7 @@ __all__ = [
     "beside",
     "companion",
     "files_of",
+    "holds",
     "placed_airfoils",
     "shapes",
     "thick_airfoils",
@@ -87,6 +88,11 @@ def files_of(folder: Path, suffixes: tuple[str, ...] = SUFFIXES) -> list[Path]:
     if len(found) > MAX_FILES:
         raise FileError(str(folder), [f"holds {len(found)} files, allowed are {MAX_FILES}"])
     return sorted((path for path in found if path.name != INDEX and path.is_file()), key=natural)
+
+
+def holds(folder: Path, name: str) -> bool:
+    """Tell whether a folder has a file of an airfoil's name."""
+    return any(_plain(path.stem) == _plain(name) for path in files_of(folder))
 
 
 def shapes(folder: Path, wanted: Iterable[str], notes: Notes) -> dict[str, Airfoil]:

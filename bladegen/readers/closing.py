@@ -20,6 +20,7 @@ SLANTED = 0.15  # of the gap along the chord: its hinder end is the edge
 CLEARLY_SLANTED = 0.5  # flatbacks are cut within 30 degrees of upright
 SPACINGS = 3.0  # a gap longer than so many steps beside it is no step itself
 LONGEST = 0.2  # chords of a gap that is closed
+DIGITS = 5  # of a point that is named
 PAIRS = 2  # points on either side of the edge that are compared
 OPEN = "taken as an open edge (in doubt: list the first point again at the end to close it)"
 DOUBT = "in doubt: it may be open; end both sides alike to keep it open"
@@ -68,8 +69,9 @@ def ends(points: Array) -> Ends:
         return Ends(points, said=f"its ends are {length:.3g} apart; {OPEN}")
     end = points[:1] if first else points[-1:]
     closed = np.concatenate([points, end] if first else [end, points])
+    x, y = (np.round(end[0], DIGITS) + 0.0).tolist()  # no -0
     said = (
-        f"the edge point ({end[0, 0]:.5g}, {end[0, 1]:.5g}) is listed once, {length:.3g} from the "
+        f"the edge point ({x:g}, {y:g}) is listed once, {length:.3g} from the "
         "other end; closed there"
     )
     return Ends(closed, True, f"{said} ({DOUBT})" if doubt else said)

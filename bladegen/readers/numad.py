@@ -5,7 +5,8 @@ rotor spin (CW or CCW) and swept twist (T or F) in rows 2 to 4; from row 7 on, d
 empty span: span [m], twist [deg, leading edge upwind], chord [m], thickness [%], chord offset and
 aerodynamic centre [chords] in A to F, empty where there is no value; airfoils in H (span [m])
 and I (name).  The offset is the distance from leading edge to pitch axis; with natural offset it
-is counted from the place of the greatest thickness.  There is no prebend and no sweep.
+is counted from the place of the greatest thickness.  There is no prebend and no sweep.  The older
+workbooks, and project files, are `readers.numad_stations`.
 """
 
 import math
@@ -16,17 +17,19 @@ import numpy as np
 from bladegen.arrays import Array
 from bladegen.definition import BladeDefinition, Distribution
 from bladegen.errors import Finding
-from bladegen.readers import workbook
+from bladegen.readers import numad_stations, workbook
 from bladegen.readers.airfoil_folder import beside, shapes
 from bladegen.readers.assembly import Library, Schedule, assemble, span_fractions
 from bladegen.readers.contours import thickest
 from bladegen.readers.document import Notes, Range
 from bladegen.readers.table import Column, Rows, values_of
+from bladegen.readers.text_file import head
 
 __all__ = ["MARK", "SHEET", "SUFFIXES", "read", "recognises"]
 
-MARK = "the sheet Geometry of a NuMAD workbook"
-SUFFIXES = (".xlsx",)
+MARK = "the sheet Geometry of a NuMAD workbook, or <numad> of a project file"
+SUFFIXES = (".xlsx", ".nmd")
+PROJECT = ".nmd"
 SHEET = "Geometry"
 FIRST_ROW = 7
 COLUMNS = (
@@ -40,13 +43,19 @@ AIRFOIL_SPAN, AIRFOIL_NAME = 7, 8
 
 
 def recognises(path: Path) -> bool:
-    """Tell whether a workbook is one of NuMAD."""
+    """Tell whether a file is a workbook or a project of NuMAD."""
+    if path.suffix.lower() == PROJECT:
+        return "<blade>" in head(path).lower()
     return SHEET in workbook.sheet_names(path)
 
 
 def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinition | None:
     """Read a blade; None if there are problems, which `notes` then holds."""
+    if path.suffix.lower() == PROJECT:
+        return numad_stations.read_project(path, notes)
     rows = workbook.sheets(path, (SHEET,)).get(SHEET, [])
+    if numad_stations.is_layout(rows):
+        return numad_stations.read_workbook(path, rows, notes, airfoils)
     natural = _switch(rows, 2, ("T", "F"), notes) == "T"
     if _switch(rows, 3, ("CW", "CCW"), notes) == "CCW":
         notes.findings.append(

@@ -1,15 +1,22 @@
 """Hypothesis strategies: points and tangents of Gr(n, 2), rotations, airfoils, definitions."""
 
 import numpy as np
+from hypothesis import settings
 from hypothesis import strategies as st
 
 from bladegen import grassmann
 from bladegen.arrays import Array, readonly
 from bladegen.definition import Airfoil, BladeDefinition, Distribution, ReferenceAxis, Station
 
+STEADY = settings.default.max_examples < 20  # `make test`, as opposed to `make test-all`
 SEEDS = st.integers(0, 2**32 - 1)
 SIZES = st.integers(5, 40)
 MODERATE = 1.2  # rad; principal angles stay below 90 degrees
+
+
+def few(most: int) -> int:
+    """How many examples to draw of what is slow: a third of the most in `make test`."""
+    return max(1, most // 3) if STEADY else most
 
 
 def random_points(rng: np.random.Generator, count: int, n: int) -> Array:

@@ -14,7 +14,7 @@ from bladegen.errors import DefinitionError
 from bladegen.landmarks import landmarks
 from bladegen.readers import bundled, read
 from bladegen.sections import SectionSplines
-from strategies import SEEDS, definitions
+from strategies import SEEDS, definitions, few
 
 N = 101
 PATHS = st.sampled_from(["geodesic", "spline"])
@@ -104,7 +104,7 @@ def test_points_between_landmarks_lie_on_the_same_sections(definition, path):
     assert_allclose(by_splines.sections(SPANS, finer), blade.sections(SPANS, finer), atol=0.05)
 
 
-@settings(max_examples=15)
+@settings(max_examples=few(15))
 @given(definitions(), st.integers(20, 90))
 def test_stations_hold_what_they_must_and_increase(definition, count):
     blade = Blade.from_definition(definition, landmarks=N)

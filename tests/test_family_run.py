@@ -104,6 +104,18 @@ def test_processes_make_the_same_family(reference, tmp_path):
     same(whole(tmp_path / "jobs"), whole(reference))
 
 
+def test_a_cluster_makes_the_same_family(reference, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    here = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
+    with (
+        distributed.LocalCluster(processes=False, **here) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        run(Order(planned(), tmp_path / "dask"), client=client)
+    same(whole(tmp_path / "dask"), whole(reference))
+
+
+@pytest.mark.nightly
 def test_a_killed_worker_of_a_cluster_changes_nothing(reference, tmp_path):
     distributed = pytest.importorskip("distributed")
     with (
@@ -159,11 +171,18 @@ def start(target, *more, **kwargs):
 STOPS = (signal.SIGTERM, signal.SIGKILL, signal.SIGINT)
 
 
-@pytest.mark.parametrize("jobs", ["1", "2"])
-def test_runs_killed_at_any_point_leave_no_workers_and_go_on(reference, tmp_path, jobs):
+@pytest.mark.parametrize(
+    ("jobs", "stops"),
+    [
+        ("2", [signal.SIGKILL]),
+        pytest.param("1", STOPS, marks=pytest.mark.nightly),
+        pytest.param("2", STOPS, marks=pytest.mark.nightly),
+    ],
+)
+def test_runs_killed_at_any_point_leave_no_workers_and_go_on(reference, tmp_path, jobs, stops):
     target = tmp_path / "killed"
     rng = np.random.default_rng([int(jobs), 5])
-    for how in STOPS:
+    for how in stops:
         more = ["--resume"] if (target / "family.json").exists() else []
         process = start(target, "--jobs", jobs, *more)
         deadline = time.monotonic() + 300
@@ -190,10 +209,7 @@ def test_runs_killed_at_any_point_leave_no_workers_and_go_on(reference, tmp_path
     assert f"{COUNT}," in out
     same(whole(target), whole(reference))
     assert not list(target.glob("sections.zarr/**/*.partial"))
-    again = start(target, "--resume")
-    out, err = again.communicate(timeout=600)
-    assert again.returncode == 0, err
-    assert "0 of them made now" in out
+    assert run(Order(planned(), target), resume=True) == 0
 
 
 def test_a_full_disk_is_one_line_and_the_run_goes_on(reference, tmp_path):

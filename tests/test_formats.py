@@ -16,7 +16,7 @@ from bladegen.conventions import axis_of_line, curve_length, line_of_axis
 from bladegen.definition import Airfoil, BladeDefinition, Distribution, Rotor, Station
 from bladegen.redefinition import redefined
 from bladegen.resampling import MOST_NODES, common_grid, shape_grid
-from strategies import definitions
+from strategies import definitions, few
 
 NAMES = ("dtu10mw", "iea15mw", "nrel5mw")
 FILES = {"openfast": "blade.dat", "hawc2": "blade.htc", "xlsx": "blade.xlsx", "csv": "blade.csv"}
@@ -89,7 +89,7 @@ def test_a_csv_file_holds_a_definition_whole(tmp_path, name):
 
 
 @pytest.mark.parametrize("format_", FILES)
-@settings(max_examples=3, deadline=None, phases=(Phase.generate,))
+@settings(max_examples=few(3), deadline=None, phases=(Phase.generate,))
 @given(first=definitions())
 def test_any_blade_comes_back(tmp_path_factory, format_, first):
     path = tmp_path_factory.mktemp("formats") / FILES[format_]

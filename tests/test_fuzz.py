@@ -18,21 +18,23 @@ from hypothesis import strategies as st
 import bladegen as bg
 from bladegen import archive
 from bladegen.errors import BladegenError
-from strategies import naca
+from strategies import few, naca
 
 
-def test_two_thousand_bad_inputs_end_well():
-    tally = fuzz(TARGETS, seed=2026, count=2000)
+@pytest.mark.parametrize("count", [300, pytest.param(2000, marks=pytest.mark.nightly)])
+def test_bad_inputs_end_well(count):
+    tally = fuzz(TARGETS, seed=2026, count=count)
     assert tally.failures == []
-    assert tally.inputs == 2000
-    for target in TARGETS:
-        outcomes = {k: n for k, n in tally.outcomes.items() if k.startswith(target.name)}
-        errors = sum(n for k, n in outcomes.items() if k.endswith("Error"))
-        assert errors > 0.2 * sum(outcomes.values())  # bad enough
-        assert errors < 0.95 * sum(outcomes.values())  # and good enough to get inside
+    assert tally.inputs == count
+    if count >= 2000:  # enough of each target for shares
+        for target in TARGETS:
+            outcomes = {k: n for k, n in tally.outcomes.items() if k.startswith(target.name)}
+            errors = sum(n for k, n in outcomes.items() if k.endswith("Error"))
+            assert errors > 0.2 * sum(outcomes.values())  # bad enough
+            assert errors < 0.95 * sum(outcomes.values())  # and good enough to get inside
 
 
-@settings(max_examples=15)
+@settings(max_examples=few(15))
 @given(st.sampled_from(TARGETS), st.randoms(use_true_random=False))
 def test_hypothesis_finds_nothing_either(tmp_path_factory, target, rng):
     room = tmp_path_factory.getbasetemp() / "fuzz" / "room"

@@ -15,7 +15,7 @@ from bladegen.grid_files import welded
 from bladegen.grid_quality import areas, corner_angles, grid_figures, skewness
 from bladegen.readers import bundled, read
 from bladegen.tips import arcs, flat_tip, on_arcs, round_tip
-from strategies import definitions
+from strategies import definitions, few
 
 TIPS = flat_tip, round_tip
 SMALL = Spacing(around=65, along=17, edge=4, leading_edge=5e-3, trailing_edge=5e-3, tip=0.01)
@@ -153,7 +153,7 @@ def test_a_flat_tip_is_plane(blade):
         assert np.linalg.svd(flat, compute_uv=False)[2] < 1e-9
 
 
-@settings(max_examples=15)
+@settings(max_examples=few(15))
 @given(
     definitions(),
     st.sampled_from(TIPS),

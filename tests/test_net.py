@@ -8,7 +8,7 @@ from bladegen.blade import Blade
 from bladegen.landmarks import landmark_parameters, landmarks
 from bladegen.net import fitted
 from bladegen.readers import bundled, read
-from strategies import SEEDS, definitions, ellipse
+from strategies import SEEDS, definitions, ellipse, few
 
 U = landmark_parameters(101)
 
@@ -67,7 +67,7 @@ def test_offsets_are_distances_along_the_normal():
     assert_allclose(fitted.offsets(points + 1e-3 * out, u, v), 1e-3, atol=1e-12)
 
 
-@settings(max_examples=5)
+@settings(max_examples=few(5))
 @given(definitions())
 def test_fitted_nets_meet_their_tolerance(definition):
     blade = Blade.from_definition(definition, landmarks=201)

@@ -12,7 +12,7 @@ from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange
 from bladegen.errors import PerturbationError
 from bladegen.perturbation import SOUND_SPANS
-from strategies import definitions
+from strategies import definitions, few
 
 SPACE = bg.ShapeSpace.bundled()
 T = np.array([0.05, -0.04, 0.03, 0.02])
@@ -104,7 +104,7 @@ def test_without_a_distribution_the_thickness_stays_too(blades):
     )
 
 
-@settings(max_examples=10)
+@settings(max_examples=few(10))
 @given(definitions(), st.floats(0.9, 1.1), st.floats(0.9, 1.1), st.floats(0.9, 1.1))
 def test_affine_parameters_do_what_their_maps_do(definition, thickness, camber, chord):
     blade = bg.Blade.from_definition(definition, landmarks=101)
@@ -120,7 +120,7 @@ def test_affine_parameters_do_what_their_maps_do(definition, thickness, camber, 
 
 
 @given(st.floats(-0.2, 0.2), st.floats(0.5, 1.5), st.floats(0.5, 1.5), st.floats(0.5, 1.5))
-@settings(max_examples=10)
+@settings(max_examples=few(10))
 def test_twist_and_scalings_act_on_the_distributions(twist, chords, twists, bend):
     blade = bg.Blade.from_definition(bg.read("iea15mw"), landmarks=51)
     variant = blade.perturbed(

@@ -24,7 +24,7 @@ from bladegen.readers.airfoil_info import polars as read_tables
 from bladegen.readers.document import Notes
 from bladegen.readers.hawc2_polars import profile_sets as read_sets
 from bladegen.writers.into import write_into
-from strategies import naca
+from strategies import few, naca
 
 ALPHA = np.radians(np.arange(-180.0, 181.0, 20.0))
 
@@ -475,7 +475,7 @@ def test_polars_come_back_from_hawc2(tmp_path):
         assert mine.airfoil.aerodynamic_center == 0.25
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=few(5), deadline=None)
 @given(st.lists(st.sampled_from([0.18, 0.21, 0.3, 0.4, 0.6, 1.0]), min_size=2, max_size=5))
 def test_thickness_may_turn_and_stay(tmp_path_factory, thicknesses):
     """Whatever the thickness does, each station gets its own polar."""

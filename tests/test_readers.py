@@ -21,7 +21,7 @@ from bladegen.definition import BladeDefinition
 from bladegen.errors import BladegenError, FileError
 from bladegen.readers import BY_AIRFOILS, yaml_file
 from bladegen.readers.document import Node, Notes, Range
-from strategies import circle, ellipse
+from strategies import circle, ellipse, few
 
 DELETE = object()
 SHAPE = "components.blade.outer_shape"
@@ -862,7 +862,7 @@ def places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
 PLACES = {version: places(make()) for version, make in ((1, windio1), (2, windio2))}
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=few(100), deadline=None)
 @given(st.data(), st.sampled_from([1, 2]))
 def test_any_change_of_a_good_document_gives_a_definition_or_an_error(tmp_path_factory, data, v):
     document = {1: windio1, 2: windio2}[v]()
@@ -884,7 +884,7 @@ def test_any_change_of_a_good_document_gives_a_definition_or_an_error(tmp_path_f
 TEXT = yaml.dump(windio2(), Dumper=DUMPER).encode()
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=few(100), deadline=None)
 @given(st.data())
 def test_any_change_of_a_good_text_gives_a_definition_or_an_error(tmp_path_factory, data):
     start = data.draw(st.integers(0, len(TEXT)))

@@ -22,7 +22,7 @@ for command in (
     ["perturb", "nrel5mw", "--thickness", "1.1", "-o", folder + "/blade", *asked, *small],
     ["family", "dtu10mw", "-o", folder + "/family", "--count", "70", "--seed", "3",
      "--spans", "12", "--jobs", sys.argv[3]],
-    ["family", "nrel5mw", "-o", folder + "/files", "--count", "2", "--seed", "3",
+    ["family", "nrel5mw", "-o", folder + "/files", "--count", "1", "--seed", "3",
      "--spans", "20", "--format", "step", "--format", "stl"],
     ["space", "build", "-o", folder + "/space.npz", "--count", "40", "--landmarks", "101"],
 ):

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from bladegen.errors import StudioError
 from bladegen.pga import ShapeSpace
 from bladegen.studio.state import AFFINE, AT, History, State, controls, from_query, to_query
+from strategies import few
 
 SPACE = ShapeSpace.bundled()
 KNOWN = controls(SPACE)
@@ -94,7 +95,7 @@ def test_reset_keeps_blade_and_section_alone(state):
     assert (plain.blade, plain.at, plain.window) == (state.blade, state.at, None)
 
 
-@settings(max_examples=10)
+@settings(max_examples=few(10))
 @given(st.integers(0, 2**32 - 1), st.floats(0.05, 1.0))
 def test_draws_lie_within_the_data_and_the_sliders(seed, reach):
     state = State("x", window=(0.2, 0.4)).drawn(SPACE, np.random.default_rng(seed), reach)

@@ -12,7 +12,7 @@ from bladegen.landmarks import landmark_parameters, landmarks
 from bladegen.sections import SectionSplines
 from bladegen.smoothness import edge_bulges, edge_widths
 from bladegen.widths import Wedges
-from strategies import airfoils, definitions
+from strategies import airfoils, definitions, few
 
 U = landmark_parameters(401)
 SPLINES = SectionSplines(U)
@@ -36,7 +36,7 @@ def test_a_wedge_gives_the_width_and_keeps_chord_thickness_and_nose(xy, width):
 
 
 @PATHS
-@settings(max_examples=8)
+@settings(max_examples=few(8))
 @given(definitions())
 def test_widths_stay_between_those_of_the_stations(path, definition):
     blade = bg.Blade.from_definition(definition, landmarks=101, path=path)
@@ -48,7 +48,7 @@ def test_widths_stay_between_those_of_the_stations(path, definition):
 
 
 @PATHS
-@settings(max_examples=8)
+@settings(max_examples=few(8))
 @given(definitions())
 def test_stations_stay_as_the_path_has_them(path, definition):
     blade = bg.Blade.from_definition(definition, landmarks=101, path=path)

@@ -19,7 +19,7 @@ from bladegen.readers.airfoil_files import read_airfoil, read_folder
 from bladegen.readers.yaml_file import load_yaml
 from bladegen.redefinition import redefined
 from bladegen.writers.into import write_into
-from strategies import airfoils, definitions, naca
+from strategies import airfoils, definitions, few, naca
 
 ETA = np.linspace(0.0, 1.0, 401)
 WINDIO = ("windio2", "windio1")
@@ -62,7 +62,7 @@ def test_a_bundled_blade_goes_through_windio_and_comes_back(tmp_path, name):
     assert third.section_offset_y is None
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=few(5), deadline=None)
 @given(definitions(thickness=True))
 def test_any_blade_goes_through_windio_and_comes_back(tmp_path_factory, definition):
     folder = tmp_path_factory.mktemp("writers")

@@ -185,6 +185,26 @@ def test_a_base_whose_middle_is_listed_once_is_closed():
 
 
 @pytest.mark.parametrize("end", [0.95, 0.999])
+def test_a_thick_edge_of_coarse_points_is_open_without_a_word():
+    """As FX 77-W-500 in the IEA 3.4 MW: steep sides, both ends at x = 1, no two points alike."""
+    foil = naca(0.5, 0.0, 0.025, 34)
+    foil[:, 1] += np.where(foil[:, 0] < 0.999, 0.02 * np.sign(foil[:, 1]), 0.0)
+    foil = np.delete(foil, [1, 4, -6], axis=0)
+    read = contour(foil)
+    assert_array_equal(read.points, foil)
+    assert "apart" not in "; ".join(read.said)
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.02, 0.3])
+def test_ends_in_doubt_are_open_and_said(turned):
+    """A circle whose points are symmetric about neither end nor the gap."""
+    angle = np.concatenate([[0.0], np.linspace(0.12, 2 * np.pi - 0.05, 60)]) + turned
+    foil = np.stack([0.5 + 0.5 * np.cos(angle), 0.5 * np.sin(angle)], axis=1)
+    taken = ends(foil)
+    assert not taken.closed
+    assert (taken.said is None) == (turned == 0.0)
+
+
 def test_a_contour_that_ends_early_is_said_with_both_figures(end):
     x = SHARP[:, 0]
     cut = SHARP[x <= end]
@@ -274,6 +294,7 @@ def test_counts_that_are_wrong_are_said_or_refused():
         (WAYS["Lednicer"], None),
         (WAYS["decimal commas and semicolons"], None),
         (["a foil of one number", "1.0"], None),
+        (["inf 0 0 0"] * 9, None),
     ],
 )
 def test_polars_and_texts_are_told_from_shapes(lines, held):

@@ -152,6 +152,7 @@ def tabulates(lines: Sequence[str]) -> str | None:
         return None if values else "no coordinates"
     width = max({len(row) for row in rows}, key=[len(row) for row in rows].count)
     first = np.array([row[0] for row in rows if len(row) == width])
+    first = first[np.isfinite(first)]
     steps = np.sign(np.diff(first))
     one_way = len(first) >= FEWEST_ROWS - 1 and abs(steps.sum()) >= ONE_WAY * len(steps)
     named = any(_POLAR_WORDS.search(line) for line in lines if numbers_of(line) is None)

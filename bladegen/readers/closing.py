@@ -17,6 +17,7 @@ ROUNDING = 1e-5  # chords; ends nearer than this meet but for the digits of thei
 RUNS_ON = np.radians(45.0)  # turn of a side into the gap; a corner turns by more
 CLEARLY = np.radians(30.0), np.radians(90.0)  # turns at the end that goes on and at the other
 SLANTED = 0.15  # of the gap along the chord: its hinder end is the edge
+LEVEL = 0.02  # of the gap along the chord: both ends stand at one x, as those of an open edge do
 CLEARLY_SLANTED = 0.5  # flatbacks are cut within 30 degrees of upright
 SPACINGS = 3.0  # a gap longer than so many steps beside it is no step itself
 LONGEST = 0.2  # chords of a gap that is closed
@@ -37,12 +38,15 @@ class Ends:
         It starts and ends at one point if closed.
     closed : bool
         Whether a point was listed again to close it.
+    apart : bool
+        Whether it is plainly open: two corners, or ends much farther apart than points are.
     said : str, optional
         What was taken, where it is not plain.
     """
 
     points: Array
     closed: bool = False
+    apart: bool = False
     said: str | None = None
 
 
@@ -56,7 +60,7 @@ def ends(points: Array) -> Ends:
     turns = _turn(before, gap), _turn(gap, after)
     near = length <= SPACINGS * max(float(np.hypot(*before)), float(np.hypot(*after)))
     if min(turns) > RUNS_ON:
-        return Ends(points)
+        return Ends(points, apart=True)
     slant = float(gap @ _chord_direction(points)) / length
     if length <= LONGEST and abs(slant) > (SLANTED if near else CLEARLY_SLANTED):
         first: bool | None = slant > 0
@@ -64,9 +68,10 @@ def ends(points: Array) -> Ends:
     elif near:
         first, doubt = _tip(points), False
     else:
-        return Ends(points)
+        return Ends(points, apart=True)
     if first is None:
-        return Ends(points, said=f"its ends are {length:.3g} apart; {OPEN}")
+        level = abs(slant) <= LEVEL
+        return Ends(points, said=None if level else f"its ends are {length:.3g} apart; {OPEN}")
     end = points[:1] if first else points[-1:]
     closed = np.concatenate([points, end] if first else [end, points])
     x, y = (np.round(end[0], DIGITS) + 0.0).tolist()  # no -0
@@ -74,7 +79,7 @@ def ends(points: Array) -> Ends:
         f"the edge point ({x:g}, {y:g}) is listed once, {length:.3g} from the "
         "other end; closed there"
     )
-    return Ends(closed, True, f"{said} ({DOUBT})" if doubt else said)
+    return Ends(closed, closed=True, said=f"{said} ({DOUBT})" if doubt else said)
 
 
 def _turn(one: Array, other: Array) -> float:

@@ -200,7 +200,7 @@ def _turned(points: Array, said: list[str]) -> Array:
     ring = points[:-1] if gap <= REPEATED else points
     last = int(np.argmax(ring[:, 0]))
     ways = [np.roll(ring, -last, axis=0), np.roll(ring, -last - 1, axis=0)]
-    open_ = [way for way in ways if ends(way).said is None]
+    open_ = [way for way in ways if ends(way).apart]
     if open_:  # an edge with two corners, one of the steps that meet in the hindmost point
         return max(open_, key=lambda way: float(np.hypot(*(way[0] - way[-1]))))
     return np.concatenate([ways[0], ways[0][:1]])
@@ -231,11 +231,10 @@ def _shift(points: Array, said: list[str]) -> Array:
     aside = float(np.sign(edge[1])) * min(abs(nose[1]), abs(edge[1]))
     beside = nose[1] * edge[1] > 0 and abs(aside) > SHIFTED
     shift = np.array([start if abs(start) > SHIFTED else 0.0, aside if beside else 0.0])
-    if shift.any():
-        along = " and ".join(
-            f"{axis} = {by:.4g}" for axis, by in zip("xy", shift, strict=True) if by
-        )
-        said.append(f"its nose lies at {along}; shifted to 0")
+    if shift[0]:
+        said.append(f"its nose lies at x = {shift[0]:.4g}; shifted to 0")
+    if shift[1]:
+        said.append(f"its chord line lies at y = {shift[1]:.4g}; shifted to 0")
     return shift
 
 

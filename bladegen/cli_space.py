@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from bladegen.cli_options import ending_in
-from bladegen.terminal import print_space, print_table, progress_bar
+from bladegen.terminal import print_findings, print_space, print_table, progress_bar
 
 __all__ = ["app"]
 
@@ -39,12 +39,14 @@ def build_space(
     from bladegen.database import baselines
     from bladegen.database import build_space as learn
     from bladegen.errors import FileError
-    from bladegen.readers.airfoil_files import read_folder
+    from bladegen.readers.airfoil_files import airfoil_folder
 
     if airfoils is None:
         found = baselines()
     else:
-        found, unusable = read_folder(airfoils)
+        held = airfoil_folder(airfoils)
+        found, unusable = held.airfoils, held.unusable
+        print_findings([str(one) for one in held.said])
         for file, reason in unusable.items():
             typer.echo(f"unusable: {file}: {reason}", err=True)
         if unusable and not skip_unusable:

@@ -7,7 +7,7 @@ from bladegen.errors import FileError
 from bladegen.landmarks import landmarks
 from bladegen.pga import ShapeSpace
 from bladegen.readers import bundled, read
-from bladegen.readers.airfoil_files import read_airfoil, read_folder
+from bladegen.readers.airfoil_files import airfoil_folder, read_airfoil, read_folder
 from strategies import naca
 
 
@@ -88,6 +88,10 @@ def test_unusable_files_are_listed_with_the_reason(tmp_path):
     assert "0 points" in unusable["empty.dat"]
     assert "finite" in unusable["nan.dat"]
     assert "trailing edge to trailing edge" in unusable["half.dat"]
+    (tmp_path / "polar.dat").write_text("alpha cl cd\n-10 -0.5 0.02\n0 0.4 0.01\n10 1.2 0.02\n")
+    assert "polar.dat" not in read_folder(tmp_path)[1]
+    said = [str(one) for one in airfoil_folder(tmp_path).said]
+    assert said == ["polar.dat: holds polars, not a shape; passed over"]
     with pytest.raises(FileError, match="is no folder"):
         read_folder(tmp_path / "nowhere")
     with pytest.raises(FileError, match="cannot be read"):

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from bladegen.arrays import Array
-from bladegen.errors import FileError
+from bladegen.errors import FileError, Finding
 from bladegen.readers.contours import ContourError, contour, joined, sides
 from bladegen.readers.point_lines import PointLines, numbers_of, point_lines
 from bladegen.readers.text_file import number, read_lines
@@ -22,6 +22,8 @@ from bladegen.readers.text_file import number, read_lines
 __all__ = [
     "SUFFIXES",
     "AirfoilFile",
+    "AirfoilFolder",
+    "airfoil_folder",
     "of_lines",
     "read_airfoil",
     "read_contour",
@@ -33,6 +35,7 @@ SUFFIXES = (".dat", ".txt", ".csv", ".cor", ".pts", ".afl")
 MAX_BYTES = 1_000_000
 FEWEST_ROWS = 4  # of a table that is one
 WIDEST = 2.0  # chords: what x of Lednicer's points does not exceed, and counts do
+NOTHING = "no coordinates"
 ONE_WAY = 0.9  # of a table's steps along its first column
 COUNTED = re.compile(r"^\s*\S+\s+NumCoords(\s|$)")
 _POLAR_WORDS = re.compile(r"\b(alpha|aoa|angle|cl|cd)\b", re.IGNORECASE)
@@ -110,15 +113,39 @@ def of_lines(lines: Sequence[str], name: str) -> AirfoilFile:
     return AirfoilFile(loop.points, (*said, *loop.said), about and (about[0], about[1]))
 
 
-def read_folder(folder: Path) -> tuple[dict[str, Array], dict[str, str]]:
-    """Read all airfoil files of a folder.
+@dataclass(frozen=True)
+class AirfoilFolder:
+    """What a folder of airfoil files holds.
 
-    Returns
-    -------
+    Parameters
+    ----------
     airfoils : dict
-        Points by file stem, in the order of names.
+        Contours by file stem, in the order of names.
     unusable : dict
         The reason by file name.
+    said : tuple of Finding
+        What was read otherwise than it stands, and what stands beside shapes.
+    """
+
+    airfoils: dict[str, Array]
+    unusable: dict[str, str]
+    said: tuple[Finding, ...]
+
+
+def read_folder(folder: Path) -> tuple[dict[str, Array], dict[str, str]]:
+    """Read all airfoil files of a folder: points by stem, and the reason by unusable file.
+
+    Raises
+    ------
+    FileError
+        If there is no such folder.
+    """
+    found = airfoil_folder(folder)
+    return found.airfoils, found.unusable
+
+
+def airfoil_folder(folder: Path) -> AirfoilFolder:
+    """Read all airfoil files of a folder; polars and texts beside them are passed over.
 
     Raises
     ------
@@ -127,15 +154,24 @@ def read_folder(folder: Path) -> tuple[dict[str, Array], dict[str, str]]:
     """
     if not folder.is_dir():
         raise FileError(str(folder), ["is no folder"])
-    airfoils, unusable = {}, {}
+    airfoils: dict[str, Array] = {}
+    unusable, said = {}, []
     for path in sorted(folder.iterdir()):
         if path.suffix.lower() not in SUFFIXES or not path.is_file():
             continue
         try:
-            airfoils[path.stem] = read_airfoil(path)
+            lines = read_lines(path, most=MAX_BYTES)
+            other = tabulates(lines)
+            if other is not None and other != NOTHING:
+                said.append(Finding(path.name, f"holds {other}, not a shape; passed over"))
+                continue
+            read = of_lines(lines, str(path))
         except FileError as error:
             unusable[path.name] = "; ".join(error.problems)
-    return airfoils, unusable
+            continue
+        airfoils[path.stem] = read.points
+        said += [Finding(path.name, one) for one in read.said]
+    return AirfoilFolder(airfoils, unusable, tuple(said))
 
 
 def tabulates(lines: Sequence[str]) -> str | None:
@@ -149,7 +185,7 @@ def tabulates(lines: Sequence[str]) -> str | None:
     values = [numbers for line in lines if (numbers := numbers_of(line)) is not None]
     rows = [row for row in values if len(row) > 1]
     if not rows:
-        return None if values else "no coordinates"
+        return None if values else NOTHING
     width = max({len(row) for row in rows}, key=[len(row) for row in rows].count)
     first = np.array([row[0] for row in rows if len(row) == width])
     first = first[np.isfinite(first)]

@@ -124,11 +124,11 @@ def sides(points: Array) -> Array:
 
 
 def thickness(points: Array) -> float:
-    """Return the largest vertical distance between the sides of a contour, linear between points.
+    """Return the largest vertical distance between the sides of a contour, over its extent in x.
 
-    Good to a fraction of a percent, which is what findings need.
+    Linear between points: good to a fraction of a percent, which is what findings need.
     """
-    return float(np.max(np.abs(_sides(points)[1])))
+    return float(np.max(np.abs(_sides(points)[1])) / np.ptp(points[:, 0]))
 
 
 def thickest(points: Array) -> float:

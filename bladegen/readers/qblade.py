@@ -21,11 +21,12 @@ from bladegen.readers.assembly import Library, Schedule, assemble
 from bladegen.readers.document import Notes, Range
 from bladegen.readers.text_file import head, number, numbers, read_lines, referred
 
-__all__ = ["MARK", "SUFFIXES", "read", "recognises"]
+__all__ = ["MARK", "POLAR_FILES", "SUFFIXES", "read", "recognises"]
 
 MARK = "the columns POS, CHORD and TWIST of a QBlade blade"
 SUFFIXES = (".bld",)
 SHAPES = (".afl",)
+POLAR_FILES = ".plr"
 COLUMNS = {
     "POS": ("z", 1.0, Range(0.0, 1000.0, "m")),
     "CHORD": ("chord", 1.0, Range(0.0, 100.0, "m", above=True)),

@@ -27,6 +27,7 @@ from bladegen.readers import (
     hawc2,
     holds_blade,
     openfast,
+    qblade,
     read,
     turbine_file,
 )
@@ -36,7 +37,7 @@ from bladegen.studio.model import Baseline
 __all__ = ["UPLOADS", "UPLOAD_BYTES", "UPLOAD_FILES", "Entry", "Library"]
 
 WHOLE = turbine_file.SUFFIXES  # formats that name no other files
-UPLOADS = tuple(dict.fromkeys([*SUFFIXES, *airfoil_files.SUFFIXES]))
+UPLOADS = tuple(dict.fromkeys([*SUFFIXES, *airfoil_files.SUFFIXES, qblade.POLAR_FILES]))
 UPLOAD_BYTES = 8 * 2**20  # of a blade's files together; the largest windIO example has 0.7 MB
 UPLOAD_FILES = 500  # the IEA 15 MW from HAWC2 or OpenFAST comes in 100 to 140
 SHOWN = 120  # letters of what was sent that a message holds

@@ -17,7 +17,11 @@ from bladegen.tips import flat_tip, round_tip
 SIZE = 500.0  # mm
 
 
-@pytest.mark.parametrize("name", bundled())
+NIGHTLY = pytest.mark.nightly
+NAMES = [n if n == "nrel5mw" else pytest.param(n, marks=NIGHTLY) for n in bundled()]
+
+
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("tip", [flat_tip, round_tip])
 def test_gmsh_meshes_the_surface_of_one_volume(name, tip, tmp_path):
     solid = cad.solid(Blade.from_definition(read(name)), tolerance=1e-3, tip=tip)

@@ -7,8 +7,8 @@ of 101 interpolated points.  Each contender lives in a process of its own, which
 libraries and made and written one solid before; then they take turns, in the same rounds.  Both are
 timed from a blade that holds nothing computed yet to the shape, and to the STEP file.  How far a
 solid is from the blade is measured alike: by OCCT's projections of 480 points of the blade's sides,
-at spans and landmarks that were not used.  What is not done after `PATIENCE` seconds is not tried
-again.
+at spans and landmarks that were not used.  What is not done after so many seconds (`--patience`) is
+not tried again.
 """
 
 import json
@@ -35,6 +35,7 @@ SECTIONS = (20, 40, 80, 160)
 LOFT_LANDMARKS = 101
 RUNS = 5
 PATIENCE = 30.0  # s
+WARMING = 4.0  # times the patience: libraries are loaded and compiled
 SPANS, PLACES = 40, 12  # of the points that are measured
 GRID = 160  # points a direction, of a face, from the nearest of which a projection starts
 TIGHT = 1e-6  # mm, of OCCT's loft
@@ -138,8 +139,8 @@ def work(contender: str) -> None:
 class Worker:
     """A contender's process, which is ended when it takes too long and started again."""
 
-    def __init__(self, contender: str) -> None:
-        self.contender = contender
+    def __init__(self, contender: str, patience: float) -> None:
+        self.contender, self.patience = contender, patience
         self.process: subprocess.Popen[str] | None = None
 
     def ask(self, name: str, setting: float, *, measure: bool) -> dict[str, float] | None:
@@ -150,8 +151,9 @@ class Worker:
             self.process = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
             )
-        first = CONTENDERS[self.contender][1][0]
-        for of, patience in ((first, 4 * PATIENCE),) * (not warmed) + ((setting, PATIENCE),):
+        first: float = CONTENDERS[self.contender][1][0]
+        warming = () if warmed else ((first, WARMING * self.patience),)
+        for of, patience in (*warming, (setting, self.patience)):
             row = self._answer({"name": name, "setting": of, "measure": measure}, patience)
             if row is None:
                 return None
@@ -193,12 +195,15 @@ def answers(process: "subprocess.Popen[str]") -> Iterator[str]:
 def main() -> None:
     """Print each blade's figures."""
     options = parser(__doc__)
+    options.add_argument("--runs", type=int, help="rounds")
+    options.add_argument("--patience", type=float, default=PATIENCE, help="s a solid")
     options.add_argument("--work", help="for the processes that this one starts")
     asked = options.parse_args()
     if asked.work:
         work(asked.work)
         return
-    workers = {name: Worker(name) for name in CONTENDERS}
+    workers = {name: Worker(name, asked.patience) for name in CONTENDERS}
+    runs = asked.runs or (2 if asked.quick else RUNS)
     for name in bg.bundled()[: 1 if asked.quick else None]:
         settings = [
             (contender, setting)
@@ -207,7 +212,7 @@ def main() -> None:
         ]
         rows: dict[tuple[str, float], list[dict[str, float]]] = {key: [] for key in settings}
         late = set()
-        for run in range(2 if asked.quick else RUNS):
+        for run in range(runs):
             for key in settings:
                 if key in late:
                     continue

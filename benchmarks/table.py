@@ -2,7 +2,14 @@
 
 Runs each benchmark of this folder as a process of its own and writes what they measured, all
 contenders of one run side by side, with the machine and the versions: `docs/measured.md`.  With
-`--only`, what the document holds of the others stays.
+`--only`, what the document holds of the others stays.  If that document is written, and not at a
+small size, the tables of README.md and of the other pages that stand between
+
+    <!-- measured: BENCHMARK | FIGURE; FIGURE | CASE; CASE -->
+    <!-- end -->
+
+are made anew too, of the figures named there and of the cases that contain one of the texts, of all
+if none is given.
 """
 
 import argparse
@@ -14,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from itertools import groupby
 from pathlib import Path
@@ -23,6 +30,7 @@ from typing import Any
 from figures import SPREAD, TABLE
 
 HERE = Path(__file__).resolve().parent
+MEASURED = HERE.parent / "docs" / "measured.md"
 LIBRARIES = ("bladegen", "numpy", "scipy", "numba", "cadquery-ocp", "trimesh", "pyvista", "zarr")
 SKIPPED = {"figures", "table", "wisdem_run"}  # the last needs another environment
 HEAD = f"""# Measured
@@ -32,7 +40,9 @@ Where a cell holds four figures they are the {SPREAD} of as many runs, variants 
 stations as the head says. Machines differ and are shared: compare within a row. The rules that all
 benchmarks keep are at the head of `benchmarks/figures.py`.
 """
+LARGE = 1e7  # whole numbers below it are shown digit by digit
 Row = dict[str, Any]
+BLOCK = re.compile(r"<!-- measured:([^|>]*)\|([^|>]*)\|([^|>]*)-->\n.*?<!-- end -->", re.DOTALL)
 
 
 def machine() -> str:
@@ -71,7 +81,10 @@ def shown(values: Sequence[float] | None) -> str:
     """Return a contender's figure, or its spread without the count."""
     if values is None:
         return "not done"
-    return " / ".join(f"{value:.3g}" for value in values[:4])
+    return " / ".join(
+        f"{value:,.0f}" if value == round(value) and abs(value) < LARGE else f"{value:.3g}"
+        for value in values[:4]
+    )
 
 
 def tables(rows: Sequence[Row]) -> list[str]:
@@ -117,6 +130,40 @@ def counted(found: Sequence[Sequence[float] | None]) -> str:
     return f"of {' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))}" if counts else ""
 
 
+def chosen(rows: Sequence[Row], figures: Sequence[str], parts_of_cases: Sequence[str]) -> str:
+    """Return one table of some figures of a benchmark, and of some cases.
+
+    Raises
+    ------
+    ValueError
+        If the benchmark has none of a figure, or its figures were taken on different cases.
+    """
+    columns = [
+        [
+            row
+            for row in rows
+            if row["what"] == what and any(part in row["case"] for part in parts_of_cases or [""])
+        ]
+        for what in figures
+    ]
+    if len({cases(column) for column in columns if column}) != 1 or not all(columns):
+        raise ValueError(f"no one table of {'; '.join(figures)}")
+    return table(columns)
+
+
+def refreshed(text: str, made: Mapping[str, Sequence[Row]]) -> str:
+    """Return a page with its measured tables made anew, as far as their benchmarks were run."""
+
+    def anew(found: re.Match[str]) -> str:
+        name, figures, of = ([one.strip() for one in part.split(";")] for part in found.groups())
+        if name[0] not in made:
+            return found[0]
+        some = chosen(made[name[0]], figures, [part for part in of if part])
+        return f"<!-- measured:{found[1]}|{found[2]}|{found[3]}-->\n\n{some}\n<!-- end -->"
+
+    return BLOCK.sub(anew, text)
+
+
 def parts(text: str) -> dict[str, str]:
     """Return what an earlier document holds of each benchmark."""
     pieces = re.split(r"\n## `benchmarks/(\w+)\.py`\n", text)
@@ -126,12 +173,13 @@ def parts(text: str) -> dict[str, str]:
 def main() -> None:
     """Run the benchmarks and write the document."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    options.add_argument("target", nargs="?", type=Path, default=HERE.parent / "docs/measured.md")
+    options.add_argument("target", nargs="?", type=Path, default=MEASURED)
     options.add_argument("--only", nargs="*", help="names of benchmarks, all if not given")
     options.add_argument("--quick", action="store_true", help="try all at a small size")
     asked = options.parse_args()
     scripts = [path for path in sorted(HERE.glob("*.py")) if path.stem not in SKIPPED]
     made: dict[str, str] = {}
+    found: dict[str, list[Row]] = {}
     if asked.only and asked.target.exists():
         made = parts(asked.target.read_text(encoding="utf-8"))
     for script in scripts:
@@ -139,13 +187,17 @@ def main() -> None:
             continue
         print(f"== {script.name}", flush=True)
         start = time.perf_counter()
-        made[script.stem] = "\n" + "\n".join(tables(rows_of(script, asked.quick)))
+        found[script.stem] = rows_of(script, asked.quick)
+        made[script.stem] = "\n" + "\n".join(tables(found[script.stem]))
         print(f"== {script.name} took {time.perf_counter() - start:.0f} s", flush=True)
     text = HEAD + f"\n{machine()}\n"
     for name in sorted(name for name in made if made[name].strip()):
         text += f"\n## `benchmarks/{name}.py`\n{made[name]}"
     asked.target.write_text(text, encoding="utf-8")
     print(f"wrote {asked.target}")
+    if asked.target.resolve() == MEASURED and not asked.quick:
+        for page in (HERE.parent / "README.md", *sorted(MEASURED.parent.glob("*.md"))):
+            page.write_text(refreshed(page.read_text(encoding="utf-8"), found), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -73,6 +73,41 @@ def test_what_a_document_holds_of_other_benchmarks_stays(shared):
     assert table.parts(text) == {"a": "\n| x |\n", "b": "\ny\n"}
 
 
+def test_tables_of_pages_are_made_anew_where_their_benchmark_ran(shared):
+    _, table = shared
+    rows = [
+        {"what": what, "case": case, "unit": "s", "found": {"": [float(k)]}}
+        for what in ("made", "other")
+        for k, case in enumerate(("a, 1 mm", "a, 2 mm", "b, 1 mm"))
+    ]
+    page = (
+        "before\n<!-- measured: solids | made | 1 mm; 3 mm -->\n\n| old |\n\n<!-- end -->\n"
+        "<!-- measured: paths | made | -->\n\n| stays |\n\n<!-- end -->\nafter\n"
+    )
+    again = table.refreshed(page, {"solids": rows})
+    assert "| a, 1 mm | 0 |\n| b, 1 mm | 2 |\n" in again
+    assert "old" not in again
+    assert "stays" in again
+    assert again.startswith("before")
+    assert table.refreshed(again, {"solids": rows}) == again
+    with pytest.raises(ValueError, match="no one table of made; gone"):
+        table.chosen(rows, ["made", "gone"], [])
+
+
+def test_pages_name_benchmarks_and_figures_that_there_are(shared):
+    _, table = shared
+    root = BENCHMARKS.parent
+    blocks = [
+        block
+        for page in (root / "README.md", *sorted((root / "docs").glob("*.md")))
+        for block in table.BLOCK.findall(page.read_text())
+    ]
+    assert blocks
+    for name, figures, _ in blocks:
+        script = (BENCHMARKS / f"{name.strip()}.py").read_text()
+        assert all(f'"{one.strip()}' in script for one in figures.split(";")), (name, figures)
+
+
 @pytest.mark.parametrize("path", sorted(BENCHMARKS.glob("*.py")), ids=lambda path: path.stem)
 def test_every_benchmark_says_how_it_is_run_and_can_be_tried_at_a_small_size(path, shared):
     _, table = shared

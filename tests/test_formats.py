@@ -20,8 +20,8 @@ from strategies import definitions, few
 
 NAMES = ("dtu10mw", "iea15mw", "nrel5mw")
 FILES = {"openfast": "blade.dat", "hawc2": "blade.htc", "xlsx": "blade.xlsx", "csv": "blade.csv"}
-# mm between the surfaces; the tables of docs/formats.md print what is measured
-WITHIN = {"openfast": 0.6, "hawc2": 0.5, "xlsx": 0.5, "csv": 1e-6}
+# mm between the surfaces: the largest of the table in docs/formats.md
+WITHIN = {"openfast": 0.47, "hawc2": 0.41, "xlsx": 0.41, "csv": 1e-6}
 RUN = CliRunner()
 
 
@@ -115,7 +115,7 @@ def test_a_perturbed_blade_goes_out(tmp_path, format_, perturbed):
     again = bg.Blade.from_definition(bg.read(path), landmarks=401)
     spans = np.linspace(0.05, 1.0, 31)
     made = variant.sections(spans), again.sections(spans)
-    assert 1e3 * max(apart(*made), apart(*made[::-1])) < 0.8
+    assert 1e3 * max(apart(*made), apart(*made[::-1])) < 0.5  # docs/formats.md
     plain = bg.Blade.from_definition(bg.read("nrel5mw")).sections(spans)
     assert 1e3 * apart(plain, made[1]) > 20.0  # the change is in the file
 
@@ -138,7 +138,8 @@ def test_swept_blades_with_offsets_and_no_thickness_come_back(tmp_path, format_)
     path = tmp_path / FILES[format_]
     said = [str(finding) for finding in bg.write(swept, path)]
     again = bg.read(path)
-    assert surfaces_apart(swept, again) < (0.6 if format_ in ("csv", "xlsx") else 2.5)
+    # docs/formats.md: 2 mm where a format has no place for offsets normal to the chord
+    assert surfaces_apart(swept, again) < (0.5 if format_ in ("csv", "xlsx") else 2.01)
     if format_ in ("openfast", "hawc2"):
         assert any("section_offset_x" in line for line in said)
         assert not any("rotor" in line for line in said)

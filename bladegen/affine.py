@@ -7,6 +7,7 @@ any leading axes: xy and X are (..., n, 2), M is (..., 2, 2), b is (..., 2).
 
 import numpy as np
 
+from bladegen.arguments import numbers
 from bladegen.arrays import Array
 from bladegen.errors import GeometryError
 
@@ -48,6 +49,11 @@ def standardise(xy: Array) -> tuple[Array, Array, Array]:
     GeometryError
         If the landmarks of a shape lie on a line.
     """
+    xy = numbers(xy, "landmarks", GeometryError)
+    if xy.ndim < 2 or xy.shape[-1] != 2 or xy.shape[-2] < 3 or not np.isfinite(xy).all():
+        raise GeometryError(
+            f"landmarks: got the shape {xy.shape}, must be (..., n, 2) with n from 3, and finite"
+        )
     b = xy.mean(axis=-2)
     U, s, Vt = np.linalg.svd(xy - b[..., None, :], full_matrices=False)
     if np.any(s[..., -1] <= FLAT * s[..., 0]):

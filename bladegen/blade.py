@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 
 from bladegen import affine
+from bladegen.arguments import amount, function, instance, numbers, one_of, whole
 from bladegen.arrays import Array, ArrayLike, readonly
 from bladegen.crowding import Crowding
 from bladegen.definition import BladeDefinition, pchip
-from bladegen.deformation import Deformation, Thickening
+from bladegen.deformation import Deformation, Thickening, in_units
 from bladegen.edges import MinimumThickness, TrailingEdge
 from bladegen.errors import DefinitionError, Finding
 from bladegen.fairing import TOLERANCE
@@ -104,7 +105,7 @@ class Blade(Shaped):
     def __repr__(self) -> str:
         return (
             f"<Blade {self.name}: {self.length:.1f} m, {len(self.eta)} stations, "
-            f"{len(self.u)} landmarks>"
+            f"{len(self.u)} landmarks{''.join(map(_told, self.changes))}>"
         )
 
     def _repr_html_(self) -> str:
@@ -148,13 +149,22 @@ class Blade(Shaped):
         Raises
         ------
         DefinitionError
-            If `path` is no path.
+            If `definition` is none, `path` is no path, or a choice is of another kind.
         GeometryError
             If an airfoil or `fairing` is unusable.
         """
-        if path not in PATHS:
-            raise DefinitionError(f"path: got {path!r}, allowed are {', '.join(PATHS)}")
-        u = landmark_parameters(landmarks, spacing)
+        must = "a BladeDefinition, such as bladegen.read('iea15mw') or bladegen.read(path) gives"
+        instance(definition, BladeDefinition, "definition", must, DefinitionError)
+        one_of(path, PATHS, "path", DefinitionError)
+        for field, value, wanted in (
+            ("planes", planes, "a function such as bladegen.planform.normal_to_z"),
+            ("trailing_edge", trailing_edge, "such as bladegen.edges.MinimumThickness(0.002)"),
+            ("spacing", spacing, "a function such as bladegen.landmarks.cosine"),
+        ):
+            function(value, field, wanted, DefinitionError)
+        if fairing is not None:
+            amount(fairing, "fairing", DefinitionError)
+        u = landmark_parameters(whole(landmarks, "landmarks", DefinitionError), spacing)
         curves = {
             id(station.airfoil): contour(station.airfoil.coordinates, fairing=fairing)
             for station in definition.stations
@@ -205,15 +215,15 @@ class Blade(Shaped):
 
     def chord(self, eta: ArrayLike) -> Array:
         """Return the chord [m] at `eta`: the definition's spline."""
-        return self.definition.chord(eta)
+        return self.definition.chord(_spans(eta))
 
     def twist(self, eta: ArrayLike) -> Array:
         """Return the twist [rad] at `eta`: the definition's spline."""
-        return self.definition.twist(eta)
+        return self.definition.twist(_spans(eta))
 
     def axis(self, eta: ArrayLike) -> Array:
         """Return the reference axis (..., 3) [m] at `eta`."""
-        axis = self.definition.axis(eta)
+        axis = self.definition.axis(_spans(eta))
         return axis * MIRROR if self.mirrored else axis
 
     @cached_property
@@ -239,6 +249,7 @@ class Blade(Shaped):
             thickness where there is one, exactly.  Trailing edges are as given.
         """
         spans = _spans(eta)
+        u = u if u is None else _parameters(u)
         flat = spans.reshape(-1)
         path = self._path(flat)
         opening = self._opening(flat, *path)
@@ -322,6 +333,7 @@ class Blade(Shaped):
             If `count` is too small to hold the fixed ones.
         """
         fixed = np.unique(np.concatenate([[0.0], self.eta, [1.0]]))
+        count = whole(count, "stations", DefinitionError)
         if count < len(fixed):
             raise DefinitionError(
                 f"stations: got {count}, at least {len(fixed)} are needed: root, tip and the "
@@ -338,8 +350,28 @@ class Blade(Shaped):
 
 def _spans(eta: ArrayLike) -> Array:
     """Return span fractions as an array, or say which is not allowed."""
-    spans = np.asarray(eta, dtype=np.float64)
+    spans = numbers(eta, "eta", DefinitionError, "span fractions from 0 (root) to 1 (tip)")
     if not bool(np.all((spans >= 0) & (spans <= 1))):
         bad = spans[~((spans >= 0) & (spans <= 1))][0]
         raise DefinitionError(f"eta: got {bad:g}, allowed is 0 (root) to 1 (tip)")
     return spans
+
+
+def _parameters(u: Array) -> Array:
+    """Return landmark parameters as an array, or say that they are none."""
+    values = numbers(u, "u", DefinitionError, "landmark parameters from 0 to 1")
+    if values.ndim != 1 or not bool(np.all((values >= 0) & (values <= 1))):
+        raise DefinitionError("u: must be a list of landmark parameters from 0 to 1")
+    return values
+
+
+def _told(change: dict[str, Any]) -> str:
+    """Return in a few words what one call of `perturbed` asked for."""
+    asked = [in_units(key, value) for key, value in change.items() if isinstance(value, float)]
+    names = [key for key, value in change.items() if isinstance(value, float)]
+    words = [f"{name} {value}" for name, value in zip(names, asked, strict=True)]
+    rows = change.get("pga", [])
+    if rows:
+        first = ", ".join(f"{value:.4g}" for value in rows[0])
+        words.insert(0, f"t {first}" if len(rows) == 1 else f"t at {len(rows)} spans")
+    return f"; perturbed: {', '.join(words) or 'by nothing'}"

@@ -13,6 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
+from bladegen.arguments import amount, function, instance, numbers, shown
 from bladegen.arrays import Array, ArrayLike, readonly
 from bladegen.errors import DefinitionError, Finding
 from bladegen.polars import Polar
@@ -39,6 +40,16 @@ SMALLEST_RISE = 1e-9  # m, of the axis' z from one grid point to the next
 STEEPEST = 1e15  # change over a whole span; steeper curves overflow
 THICKNESS_RIPPLE = 1e-4  # published curves ripple by 1e-5 about the thinnest airfoil (DTU 10 MW)
 AT_END = 1e-6  # of the span: a curve that ends level meets its end value as much too early
+OVER_SPAN = "a bladegen.Distribution; Distribution.constant(value) is the same all over"
+STATIONS = "a tuple of bladegen.Station"
+QUANTITIES = (
+    "chord",
+    "twist",
+    "section_offset_y",
+    "pitch_axis",
+    "section_offset_x",
+    "relative_thickness",
+)
 MAX_AIRFOIL_POINTS = 5_000  # far above any published airfoil (399); bounds time and memory
 
 
@@ -84,7 +95,9 @@ class Airfoil:
     aerodynamic_center: float | None = None
 
     def __post_init__(self) -> None:
-        points = readonly(self.coordinates)
+        instance(self.name, str, "airfoil: name", "a text", DefinitionError)
+        what = f"airfoil {self.name!r}: coordinates"
+        points = readonly(numbers(self.coordinates, what, DefinitionError, "rows of x and y"))
         if points.ndim != 2 or points.shape[1] != 2:
             raise DefinitionError(
                 f"airfoil {self.name!r}: coordinates must be rows of x and y, got shape "
@@ -127,7 +140,9 @@ class Distribution:
     spline: Callable[[Array, Array], Interpolant] = pchip
 
     def __post_init__(self) -> None:
-        grid, values = readonly(self.grid), readonly(self.values)
+        grid = readonly(numbers(self.grid, "grid", DefinitionError))
+        values = readonly(numbers(self.values, "values", DefinitionError))
+        function(self.spline, "spline", "a function such as definition.pchip", DefinitionError)
         if grid.ndim != 1 or grid.shape != values.shape:
             raise DefinitionError(
                 f"grid and values must be lists of one length, got {grid.size} and {values.size}"
@@ -160,7 +175,8 @@ class Distribution:
     @classmethod
     def constant(cls, value: float) -> "Distribution":
         """Return the distribution that is `value` everywhere."""
-        return cls(np.array([0.0, 1.0]), np.array([value, value]))
+        one = amount(value, "value", DefinitionError)
+        return cls(np.array([0.0, 1.0]), np.array([one, one]))
 
     @cached_property
     def _interpolant(self) -> Interpolant:
@@ -168,7 +184,7 @@ class Distribution:
 
     def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
         """Return the quantity, or its `nu`-th derivative, at span fractions `eta`."""
-        eta = np.asarray(eta, dtype=np.float64)
+        eta = numbers(eta, "eta", DefinitionError)
         inside = np.clip(eta, self.grid[0], self.grid[-1])
         result = np.asarray(self._interpolant(inside, nu=nu))
         return np.where(inside == eta, result, 0.0) if nu else result
@@ -195,6 +211,11 @@ class Station:
     eta: float
     airfoil: Airfoil
 
+    def __post_init__(self) -> None:
+        if numbers(self.eta, "station: eta", DefinitionError, "a span fraction").ndim:
+            raise DefinitionError(f"station: eta: got {shown(self.eta)}, must be a span fraction")
+        instance(self.airfoil, Airfoil, "station: airfoil", "a bladegen.Airfoil", DefinitionError)
+
 
 @dataclass(frozen=True)
 class ReferenceAxis:
@@ -203,6 +224,10 @@ class ReferenceAxis:
     x: Distribution
     y: Distribution
     z: Distribution
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y", "z"):
+            instance(getattr(self, name), Distribution, f"axis: {name}", OVER_SPAN, DefinitionError)
 
     def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
         """Return points, or `nu`-th derivatives, of shape (..., 3) at `eta`."""
@@ -219,6 +244,11 @@ class Rotor:
     cone: float | None = None
     tilt: float | None = None
     hub_drag: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if value is not None:
+                amount(value, f"rotor: {name}", DefinitionError)
 
 
 @dataclass(frozen=True)
@@ -269,6 +299,7 @@ class BladeDefinition:
     findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
+        self._require_kinds()
         etas = [station.eta for station in self.stations]
         if len(etas) < 2:
             raise DefinitionError(f"{self.name}: {len(etas)} stations, at least 2 are needed")
@@ -294,6 +325,19 @@ class BladeDefinition:
                 f"{z.values[i]:g} then {z.values[i + 1]:g} m at eta = {z.grid[i]:g} and "
                 f"{z.grid[i + 1]:g}"
             )
+
+    def _require_kinds(self) -> None:
+        instance(self.name, str, "name", "a text", DefinitionError)
+        instance(self.stations, (tuple, list), f"{self.name}: stations", STATIONS, DefinitionError)
+        for station in self.stations:
+            instance(station, Station, f"{self.name}: stations", STATIONS, DefinitionError)
+        for name in QUANTITIES:
+            value = getattr(self, name)
+            if value is not None or name in ("chord", "twist"):
+                instance(value, Distribution, f"{self.name}: {name}", OVER_SPAN, DefinitionError)
+        for name, kind in (("axis", ReferenceAxis), ("rotor", Rotor)):
+            must = f"a bladegen.{kind.__name__}"
+            instance(getattr(self, name), kind, f"{self.name}: {name}", must, DefinitionError)
 
     def _require_positive(self, field: str, quantity: Distribution, unit: str) -> None:
         bad = np.flatnonzero(quantity.values < SMALLEST_SIZE)

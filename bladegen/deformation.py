@@ -13,6 +13,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from bladegen import grassmann
+from bladegen.arguments import amount, numbers, shown
 from bladegen.arrays import Array, ArrayLike, readonly
 from bladegen.chord_lines import KEPT, known_convention
 from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis, Station, united
@@ -28,21 +29,32 @@ __all__ = [
     "Window",
     "deformation_of",
     "faded",
+    "in_units",
 ]
 
 ROUND = 0.02  # of the chord; an airfoil nearer to its circle than this is round
 SAME_LANDMARKS = 1e-12
 RAMP = 33  # span fractions that resolve a window's rise
+EXTRAPOLATION = "allow_extrapolation=True (--allow-extrapolation) goes beyond the space's data"
 Amount = float | Array
 RANGES = {
     "thickness": (0.2, 5.0),
     "camber": (0.2, 1.8),
     "chord": (0.2, 5.0),
-    "twist": (-np.pi / 2, np.pi / 2),
+    "twist": (-np.pi / 4, np.pi / 4),  # a degree that is given for a radian leaves it
     "chord_scale": (0.2, 5.0),
     "twist_scale": (-5.0, 5.0),
     "prebend_scale": (-5.0, 5.0),
 }
+
+
+def in_units(name: str, value: float) -> str:
+    """Return the value of a parameter of `AffineChange` with its units, angles in both.
+
+    >>> in_units("thickness", 1.05), in_units("twist", 1.0)
+    ('1.05', '1 rad (57.3 deg)')
+    """
+    return f"{value:.4g} rad ({np.degrees(value):.3g} deg)" if name == "twist" else f"{value:.4g}"
 
 
 @dataclass(frozen=True)
@@ -53,9 +65,10 @@ class Window:
     end: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.start <= self.end <= 1.0:
+        start, end = (amount(edge, "window", PerturbationError) for edge in (self.start, self.end))
+        if not 0.0 <= start <= end <= 1.0:
             raise PerturbationError(
-                f"window: got {self.start:g} to {self.end:g}, must rise within 0 to 1"
+                f"window: got {start:g} to {end:g}, must rise within 0 (root) to 1 (tip)"
             )
 
     @classmethod
@@ -105,7 +118,9 @@ class Coordinates:
     values: Array
 
     def __post_init__(self) -> None:
-        grid, values = readonly(self.grid), readonly(self.values)
+        what = "coordinates over span"
+        grid = readonly(numbers(self.grid, what, PerturbationError))
+        values = readonly(numbers(self.values, what, PerturbationError))
         if grid.ndim != 1 or values.ndim != 2 or len(grid) != len(values) or not len(grid):
             raise PerturbationError(
                 f"coordinates over span: got {grid.shape} knots and {values.shape} values, must be "
@@ -119,7 +134,13 @@ class Coordinates:
     @classmethod
     def constant(cls, t: ArrayLike) -> "Coordinates":
         """The same coordinates (r,) everywhere."""
-        return cls(np.zeros(1), np.atleast_2d(np.asarray(t, dtype=np.float64)))
+        values = numbers(t, "t", PerturbationError)
+        if values.ndim > 1:
+            raise PerturbationError(
+                f"t: got {shown(values)}, must be as many numbers as the space has modes; "
+                "bladegen.Coordinates(eta, values) holds others at other spans"
+            )
+        return cls(np.zeros(1), np.atleast_2d(values))
 
     def __call__(self, eta: Array) -> Array:
         """Return coordinates (k, r) at span fractions (k,)."""
@@ -175,6 +196,11 @@ def deformation_of(
     """
     if space is None:
         raise PerturbationError("t: coordinates need a shape space, such as ShapeSpace.bundled()")
+    if t.values.shape[1] != space.dimension:
+        raise PerturbationError(
+            f"t: got {t.values.shape[1]} coordinates (--pga), the space has {space.dimension} "
+            f"modes: give t1 to t{space.dimension}, 0 where one shall stay"
+        )
     if len(space.u) != len(u) or not np.allclose(space.u, u, rtol=0, atol=SAME_LANDMARKS):
         raise PerturbationError(
             f"the shape space is of {len(space.u)} landmarks, the blade of {len(u)}, or they are "
@@ -182,7 +208,7 @@ def deformation_of(
         )
     beyond = space.outside(t.values)
     if beyond and not allow_extrapolation:
-        raise PerturbationError(f"{beyond}; extrapolation must be asked for")
+        raise PerturbationError(f"{beyond}; {EXTRAPOLATION}")
     return Deformation(space, t, window, known_convention(chord_line))
 
 
@@ -219,11 +245,12 @@ class AffineChange:
 
     def __post_init__(self) -> None:
         for name, (low, high) in RANGES.items():
-            values = np.atleast_1d(getattr(self, name))
+            values = np.atleast_1d(numbers(getattr(self, name), name, PerturbationError))
             outside = values[~((low <= values) & (values <= high))]
             if outside.size:
                 raise PerturbationError(
-                    f"{name}: got {outside[0]:g}, allowed is {low:.4g} to {high:.4g}"
+                    f"{name}: got {in_units(name, outside[0])}, allowed is "
+                    f"{in_units(name, low)} to {in_units(name, high)}"
                 )
 
     def changed(self) -> dict[str, float]:

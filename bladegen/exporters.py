@@ -7,13 +7,22 @@ at all.
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from bladegen import cad, cad_files, grid, grid_files, mesh, preview, writers
+from bladegen.arguments import (
+    amount,
+    function,
+    instance,
+    one_of,
+    path_of,
+    suggestion,
+    whole,
+)
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, Finding, SizeError, ToleranceError
@@ -38,6 +47,7 @@ logger = logging.getLogger(__name__)
 
 UNITS = {"m": 1.0, "mm": 1000.0}
 STL_HEADER = 80  # bytes of free text at the start of a binary STL file
+TOLERANCES = 1e-6, 0.05  # m; millimetres that are given for metres leave the range
 
 
 @dataclass(frozen=True)
@@ -85,17 +95,21 @@ class Options:
     reynolds: float | None = None
 
     def __post_init__(self) -> None:
-        if self.unit not in UNITS:
-            raise ExportError(f"unit: got {self.unit!r}, allowed are {', '.join(UNITS)}")
-        if self.step_schema not in cad_files.STEP_SCHEMAS:
+        one_of(self.unit, UNITS, "unit", ExportError)
+        one_of(self.step_schema, cad_files.STEP_SCHEMAS, "step_schema", ExportError)
+        tolerance, (least, most) = amount(self.tolerance, "tolerance", ExportError), TOLERANCES
+        if not least <= tolerance <= most:
             raise ExportError(
-                f"step_schema: got {self.step_schema!r}, allowed are "
-                f"{', '.join(cad_files.STEP_SCHEMAS)}"
+                f"tolerance: got {tolerance:g} m, allowed is {least:g} to {most:g} m "
+                f"({least * 1e3:g} to {most * 1e3:g} mm); 0.3 mm is tolerance=3e-4 in Python, "
+                "--tolerance 0.3mm in the shell"
             )
-        if not 0 < self.tolerance < 1:
-            raise ExportError(
-                f"tolerance: got {self.tolerance:g} m, allowed is more than 0 and less than 1 m"
-            )
+        whole(self.stations, "stations", ExportError)
+        if self.sections is not None:
+            whole(self.sections, "sections", ExportError)
+        function(self.tip, "tip", "bladegen.tips.flat_tip or round_tip", ExportError)
+        must = "a bladegen.grid.Spacing"
+        instance(self.spacing, grid.Spacing, "spacing", must, ExportError)
 
 
 @dataclass(frozen=True, eq=False)
@@ -307,7 +321,10 @@ def format_of(path: Path) -> Format:
     for suffix in sorted(FORMATS, key=len, reverse=True):  # .sections.csv before .csv
         if path.name.lower().endswith(suffix):
             return FORMATS[suffix]
-    raise ExportError(f"{path}: suffix {path.suffix!r}, allowed are {', '.join(FORMATS)}")
+    raise ExportError(
+        f"{path}: suffix {path.suffix!r}, allowed are {', '.join(FORMATS)}"
+        f"{suggestion(path.suffix, FORMATS)}"
+    )
 
 
 def export(blade: Blade, path: str | Path, **options: Any) -> Path:
@@ -330,15 +347,24 @@ def export(blade: Blade, path: str | Path, **options: Any) -> Path:
     Raises
     ------
     ExportError
-        If the suffix is unknown or the file cannot be written.
+        If the suffix or an option is unknown, an argument is of another kind, or the file
+        cannot be written.
     CadError
         If the solid is not valid; `ToleranceError` if it misses its tolerance, with the file
         kept beside the target as ``<name>.out-of-tolerance.step``; `SizeError` if it is larger
         than `Options.largest`, kept as ``<name>.too-large.step``.
     """
-    path = Path(path)
-    products = Products(blade, Options(**options))
-    write(products, path)
+    must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
+    instance(blade, Blade, "blade", must, ExportError)
+    path = path_of(path, "path", ExportError)
+    known = [entry.name for entry in fields(Options)]
+    for name in options:
+        if name not in known:
+            raise ExportError(
+                f"{name}: no option of export, allowed are {', '.join(known)}"
+                f"{suggestion(name, known)}"
+            )
+    write(Products(blade, Options(**options)), path)
     return path
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from bladegen.arguments import numbers
 from bladegen.arrays import Array
 from bladegen.errors import GeometryError
 
@@ -44,6 +45,7 @@ def align(X: Array, Y: Array) -> Array:
     (..., n, p) array
         Y @ Q with orthogonal Q, such that X^T Y Q is symmetric and positive.
     """
+    X, Y = _alike(X, Y)
     return Y @ _procrustes(X, Y)
 
 
@@ -62,6 +64,7 @@ def exp(X: Array, D: Array) -> Array:
     (..., n, p) array
         Orthonormal basis of the end plane, continuous in `D` (theorem 2.3).
     """
+    X, D = _alike(X, D)
     cosine, sinc = exp_factors(D.mT @ D)
     return X @ cosine + D @ sinc
 
@@ -89,6 +92,7 @@ def log(X: Array, Y: Array) -> Array:
     GeometryError
         If a principal angle between the planes reaches 90 degrees.
     """
+    X, Y = _alike(X, Y)
     G, H = log_factors(X.mT @ Y)
     D: Array = Y @ G - X @ H
     return D - X @ (X.mT @ D)  # rounding of the difference leaves the horizontal space
@@ -135,6 +139,7 @@ def distance(X: Array, Y: Array) -> Array:
     (...) array
         Accurate for small angles too: sines come from the residual, not from cosines.
     """
+    X, Y = _alike(X, Y)
     U, cosines, Wt = _svd(X.mT @ Y)
     residual = Y @ Wt.mT - (X @ U) * cosines[..., None, :]
     sines = np.linalg.svd(residual, compute_uv=False)[..., ::-1]
@@ -143,6 +148,7 @@ def distance(X: Array, Y: Array) -> Array:
 
 def norm(D: Array) -> Array:
     """Return the length of tangent vectors, shape (..., n, p) to (...)."""
+    (D,) = _alike(D)
     return _root_sum(D * D, axes=(-2, -1))
 
 
@@ -167,6 +173,7 @@ def transport(V: Array, X: Array, Y: Array) -> Array:
     GeometryError
         If a principal angle between the planes reaches 90 degrees.
     """
+    V, X, Y = _alike(V, X, Y)
     D = log(X, Y)
     S2 = D.mT @ D
     along = D.mT @ V
@@ -198,6 +205,9 @@ def karcher_mean(
     GeometryError
         If the steps do not converge.
     """
+    (points,) = _alike(points)
+    if points.ndim != 3 or not len(points):
+        raise GeometryError(f"points: got the shape {points.shape}, must be (m, n, p)")
     mean = np.linalg.svd(align(points[:1], points).mean(axis=0), full_matrices=False)
     X: Array = mean.U @ mean.Vh
     length = np.inf
@@ -211,6 +221,16 @@ def karcher_mean(
         f"karcher_mean: not converged after {max_steps} steps: the mean tangent is "
         f"{length:.1e} rad, allowed is {tolerance:.1e}"
     )
+
+
+def _alike(*given: Array) -> list[Array]:
+    """Return bases or tangent vectors as arrays (..., n, p) of one n and p, or say they are not."""
+    arrays = [numbers(values, "points", GeometryError, "(..., n, p) arrays") for values in given]
+    shapes = {array.shape[-2:] for array in arrays}
+    if len(shapes) > 1 or any(array.ndim < 2 for array in arrays):
+        shown = " and ".join(str(array.shape) for array in arrays)
+        raise GeometryError(f"points: got the shapes {shown}, must be (..., n, p) of one n and p")
+    return arrays
 
 
 def _procrustes(X: Array, Y: Array) -> Array:

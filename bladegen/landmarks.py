@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bladegen.arguments import numbers
 from bladegen.arrays import Array, readonly
 from bladegen.errors import GeometryError
 from bladegen.fairing import fair
@@ -79,7 +80,12 @@ def landmark_parameters(n: int, spacing: Spacing = clustered) -> Array:
     """
     if n < 5 or n % 2 == 0:
         raise GeometryError(f"landmarks: got n = {n}, allowed are odd numbers from 5")
-    side = 0.5 * spacing(np.linspace(0.0, 1.0, n // 2 + 1))
+    even = np.linspace(0.0, 1.0, n // 2 + 1)
+    spaced = numbers(spacing(even), "spacing", GeometryError)
+    whole = spaced.shape == even.shape and (spaced[0], spaced[-1]) == (0.0, 1.0)
+    if not (whole and np.all(np.diff(spaced) > 0)):
+        raise GeometryError("spacing: must map an array from 0 to 1 onto 0 to 1, rising")
+    side = 0.5 * spaced
     return np.concatenate([side, 1.0 - side[-2::-1]])
 
 

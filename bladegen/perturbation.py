@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from bladegen import affine
+from bladegen.arguments import amount, instance, numbers, shown
 from bladegen.arrays import Array, ArrayLike
 from bladegen.chord_lines import KEPT
 from bladegen.crossing import crossing_sections
@@ -32,6 +33,7 @@ SOUND_SPANS = 60  # spans at which a perturbed blade is tested
 FOLDING = 0.1  # of a step's direction; sections that keep less of one are about to fold
 FINER = 32  # times, between spans of which one is about to fold
 LOST_THICKNESS = 0.2  # of the thickness before, which a deformation must leave
+CALL = "call perturbed(space, [t1, t2, ...]), with space = bladegen.ShapeSpace.bundled()"
 
 
 class Perturbable:
@@ -94,12 +96,23 @@ class Perturbable:
         Raises
         ------
         PerturbationError
-            If a value is out of range, or a section crosses itself or loses its thickness.
+            If space and t are not given together, a value is of another kind or out of range, or
+            a section crosses itself or loses its thickness.
         """
+        amounts = {
+            "thickness": thickness,
+            "camber": camber,
+            "chord": chord,
+            "twist": twist,
+            "chord_scale": chord_scale,
+            "twist_scale": twist_scale,
+            "prebend_scale": prebend_scale,
+        }
         variant = self.untested(
-            space,
-            t,
-            AffineChange(thickness, camber, chord, twist, chord_scale, twist_scale, prebend_scale),
+            *_together(space, t),
+            AffineChange(
+                **{key: amount(value, key, PerturbationError) for key, value in amounts.items()}
+            ),
             window=window,
             chord_line=chord_line,
             allow_extrapolation=allow_extrapolation,
@@ -122,7 +135,11 @@ class Perturbable:
 
         For those who test them otherwise: `families` many at once, the studio after a move.
         """
-        window = window or Window.beyond_circles(self.definition.stations)
+        if window is None:
+            window = Window.beyond_circles(self.definition.stations)
+        instance(window, Window, "window", "a bladegen.Window(start, end)", PerturbationError)
+        if name is not None:
+            instance(name, str, "name", "a text", PerturbationError)
         coordinates = t if isinstance(t, Coordinates) else Coordinates.constant(t)
         asked: dict[str, Any] = affine_change.changed()
         deformations = self.deformations
@@ -193,6 +210,20 @@ class Perturbable:
             _kept(np.diff(points, axis=1), np.diff(given, axis=1)),
             _kept(_across(points), _across(given)),
         )
+
+
+def _together(space: Any, t: Any) -> tuple[ShapeSpace | None, Coordinates]:
+    """Return a space and coordinates that were given together, or neither."""
+    if space is not None and not isinstance(space, ShapeSpace):
+        raise PerturbationError(f"space: got {shown(space)}, must be a ShapeSpace; {CALL}")
+    if not isinstance(t, Coordinates):
+        values = numbers(() if t is None else t, "t", PerturbationError)
+        t = Coordinates.constant(values)
+    if space is not None and not t.values.size:
+        raise PerturbationError(f"t: got no coordinates for the shape space; {CALL}")
+    if space is None and t.values.size:
+        raise PerturbationError(f"t: coordinates need a shape space; {CALL}")
+    return space, t
 
 
 def _across(points: Array) -> Array:

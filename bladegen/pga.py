@@ -14,6 +14,7 @@ import numpy as np
 
 from bladegen import grassmann
 from bladegen.archive import load_arrays, save_arrays
+from bladegen.arguments import instance, numbers, path_of, whole
 from bladegen.arrays import Array, readonly
 from bladegen.errors import GeometryError, SpaceError
 from bladegen.files import require_suffix
@@ -59,7 +60,14 @@ class ShapeSpace:
 
     def __post_init__(self) -> None:
         for name in ARRAYS:
-            object.__setattr__(self, name, readonly(getattr(self, name)))
+            values = numbers(getattr(self, name), name, SpaceError)
+            object.__setattr__(self, name, readonly(values))
+
+    def __repr__(self) -> str:
+        return (
+            f"<ShapeSpace of {self.dimension} modes, {len(self.u)} landmarks"
+            f"{self.about and ': '}{self.about}>"
+        )
 
     @classmethod
     def fit(
@@ -86,7 +94,11 @@ class ShapeSpace:
         GeometryError
             If the Karcher mean does not converge.
         """
+        points = _shapes(points, "points")
+        if points.ndim != 3:
+            raise SpaceError(f"points: got the shape {points.shape}, must be (shapes, n, 2)")
         count, n, _ = points.shape
+        modes = whole(modes, "modes", SpaceError)
         largest = min(count - 1, 2 * n - 4)
         if not 1 <= modes <= largest:
             raise SpaceError(f"modes: got {modes}, allowed is 1 to {largest} for {count} shapes")
@@ -131,7 +143,7 @@ class ShapeSpace:
             If the file is no space, is of another version, is damaged, or holds arrays that are
             no mean, modes and spread.
         """
-        arrays, about = load_arrays(Path(path), ARRAYS)
+        arrays, about = load_arrays(path_of(path, "space", SpaceError), ARRAYS)
         problem = _problem(arrays)
         if problem is not None:
             raise SpaceError(f"{path}: is no shape space: {problem}")
@@ -139,8 +151,9 @@ class ShapeSpace:
 
     def save(self, path: str | Path) -> None:
         """Write the space to an npz file, with a version and a checksum."""
-        require_suffix(Path(path), (".npz",))
-        save_arrays(Path(path), {name: getattr(self, name) for name in ARRAYS}, self.about)
+        where = path_of(path, "path", SpaceError)
+        require_suffix(where, (".npz",))
+        save_arrays(where, {name: getattr(self, name) for name in ARRAYS}, self.about)
 
     @property
     def dimension(self) -> int:
@@ -174,6 +187,7 @@ class ShapeSpace:
     def encode(self, points: Array) -> Array:
         """Return normal coordinates (..., r) of shapes (..., n, 2), any representatives."""
         # The logarithm is Y G - X H, and modes are horizontal: <Y G - X H, U> = <G, Y^T U>.
+        points = _shapes(points, "points", len(self.mean))
         G, _ = grassmann.log_factors(self.mean.T @ points)
         across = np.moveaxis(self.modes, 0, 1).reshape(len(self.mean), -1)
         inner = (points.mT @ across).reshape(*G.shape[:-1], self.dimension, 2)
@@ -217,6 +231,11 @@ class ShapeSpace:
 
         Its axes lie along the modes, in the ratio of the standard deviations.
         """
+        count = whole(count, "count", SpaceError)
+        if count < 0:
+            raise SpaceError(f"count: got {count}, must not be negative")
+        must = "a numpy.random.Generator, such as numpy.random.default_rng(7)"
+        instance(rng, np.random.Generator, "rng", must, SpaceError)
         spread = np.sqrt(self.variances[: self.dimension])
         direction = rng.normal(size=(count, self.dimension))
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -238,13 +257,22 @@ class ShapeSpace:
         return None
 
     def _checked(self, t: Array) -> Array:
-        t = np.asarray(t, dtype=np.float64)
+        t = numbers(t, "t", SpaceError)
         if t.ndim == 0 or t.shape[-1] != self.dimension:
             given = t.shape[-1] if t.ndim else 1
-            raise SpaceError(f"t: got {given} coordinates, the space has {self.dimension}")
+            raise SpaceError(f"t: got {given} coordinates, the space has {self.dimension} modes")
         if not np.isfinite(t).all():
             raise SpaceError("t: coordinates must be finite")
         return t
+
+
+def _shapes(points: Array, field: str, n: int | None = None) -> Array:
+    """Return shapes (..., n, 2) as an array, or say that they are none."""
+    values = numbers(points, field, SpaceError, "points of Gr(n, 2), (..., n, 2)")
+    if values.ndim < 2 or values.shape[-1] != 2 or (n is not None and values.shape[-2] != n):
+        wanted = f"(..., {'n' if n is None else n}, 2)"
+        raise SpaceError(f"{field}: got the shape {values.shape}, must be {wanted}")
+    return values
 
 
 def _chunks(count: int) -> Iterator[slice]:

@@ -13,6 +13,7 @@ PACKAGE = Path(bladegen.__file__).parent
 FLOW = [
     "errors",
     "arrays",
+    "arguments",
     "files",
     "style",
     "keys",

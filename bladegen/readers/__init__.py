@@ -7,8 +7,10 @@ in `Notes`, so that a user hears of all of them at once.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 
+from bladegen.arguments import path_of, shown, suggestion
 from bladegen.definition import BladeDefinition
 from bladegen.errors import DefinitionError, FileError, Finding
 from bladegen.readers import hawc2, numad, openfast, qblade, spanwise_table, turbine_file
@@ -68,6 +70,7 @@ FORMATS = (
         spanwise_table.read,
     ),
 )
+FEW, MANY = 3, 1000  # files of a folder that are named, and looked at
 SUFFIXES = tuple(dict.fromkeys(suffix for row in FORMATS for suffix in row.suffixes))
 
 
@@ -86,11 +89,15 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
     FileError
         If there is no such blade or file, or with all problems of the file at once.
     """
+    if not isinstance(source, str | Path):
+        raise FileError(shown(source), ["must be the name of a bundled blade, or a file's path"])
+    if airfoils is not None:
+        airfoils = path_of(airfoils, "airfoils", DefinitionError)
     path = _path(source)
     notes = Notes()
     try:
         row = _recognised(path)
-        definition = row.read(path, notes, None if airfoils is None else Path(airfoils))
+        definition = row.read(path, notes, airfoils)
     except DefinitionError as error:
         raise FileError(str(source), [str(error)]) from None
     except FileError as error:
@@ -126,17 +133,41 @@ def _path(source: str | Path) -> Path:
         return _home() / f"{source}.yaml"
     path = Path(source)
     try:
-        exists, is_file = path.exists(), path.is_file()
-    except OSError:  # a name too long for the system
-        exists = is_file = False
+        folder, exists, is_file = path.is_dir(), path.exists(), path.is_file()
+    except (OSError, ValueError):  # a name too long for the system, or that holds a zero byte
+        folder = exists = is_file = False
+    if folder:
+        raise FileError(str(source), [f"is a folder, must be a file{_inside(path)}"])
     if not is_file:
         kind = "is no regular file" if exists else "is neither a bundled blade nor a file"
-        raise FileError(str(source), [f"{kind}; bundled blades are {', '.join(names)}"])
+        near = suggestion(source, names) or suggestion(path.stem, names) or _beside(path)
+        raise FileError(str(source), [f"{kind}; bundled blades are {', '.join(names)}{near}"])
     if path.suffix.lower() not in SUFFIXES:
         raise FileError(
             str(source), [f"has the suffix {path.suffix!r}, allowed are {', '.join(SUFFIXES)}"]
         )
     return path
+
+
+def _beside(path: Path) -> str:
+    """Return which file beside a path that is none may be meant."""
+    return suggestion(path.name, _blades(path.parent), lambda name: str(path.with_name(name)))
+
+
+def _inside(path: Path) -> str:
+    """Say which files of a folder hold blades, as far as their names tell."""
+    files = _blades(path)
+    more = ", ..." if len(files) > FEW else ""
+    return f", such as {', '.join(files[:FEW])}{more}" if files else ""
+
+
+def _blades(path: Path) -> list[str]:
+    """Return the names of a folder's files that have the suffix of a blade's."""
+    try:
+        found = sorted(file.name for file in islice(path.iterdir(), MANY))
+    except OSError:
+        return []
+    return [name for name in found if Path(name).suffix.lower() in SUFFIXES]
 
 
 def _recognised(path: Path) -> Format:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from bladegen.arguments import instance, path_of, suggestion
 from bladegen.blade import Blade
 from bladegen.definition import BladeDefinition
 from bladegen.errors import ExportError, Finding
@@ -104,7 +105,7 @@ def write(
     BladegenError
         If the polars asked for cannot be had.
     """
-    path = Path(path)
+    path = path_of(path, "path", ExportError)
     row = format_of(path, format)
     definition, said = prepared(
         what, polars=polars if row.polars else "keep", reynolds=reynolds, progress=progress
@@ -120,6 +121,8 @@ def prepared(
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[BladeDefinition, tuple[Finding, ...]]:
     """Return what is written of a blade, and what is to be said of it; see `write`."""
+    must = "a Blade, or a BladeDefinition such as bladegen.read('iea15mw') gives"
+    instance(what, (Blade, BladeDefinition), "what", must, ExportError)
     if isinstance(what, BladeDefinition):
         definition, made = what, tuple[Finding, ...]()
         policy = polars or "keep"
@@ -142,6 +145,8 @@ def format_of(path: Path, name: str | None = None) -> Format:
     ExportError
         If there is none.
     """
+    if name is not None:
+        instance(name, str, "format", "a format's name", ExportError)
     known = dict.fromkeys(suffix for row in FORMATS for suffix in row.suffixes if suffix)
     for row in FORMATS:
         if row.name == name and row.suffixes == ("",) and path.suffix.lower() in known:
@@ -152,7 +157,8 @@ def format_of(path: Path, name: str | None = None) -> Format:
             return row
     if name is not None:
         names = ", ".join(row.name for row in FORMATS)
-        raise ExportError(f"format: got {name!r}, allowed are {names}")
+        near = suggestion(name, [row.name for row in FORMATS])
+        raise ExportError(f"format: got {name!r}, allowed are {names}{near}")
     suffixes = ", ".join(known)
     raise ExportError(
         f"{path}: suffix {path.suffix!r}, allowed are {suffixes}, or none for "

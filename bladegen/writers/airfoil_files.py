@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bladegen.arguments import instance, one_of, path_of
 from bladegen.arrays import Array
 from bladegen.definition import Airfoil, BladeDefinition
 from bladegen.errors import ExportError, Finding
@@ -58,11 +59,11 @@ def write_airfoil(airfoil: Airfoil, path: str | Path, *, layout: str = "selig") 
     ExportError
         If there is no such layout, or the file cannot be written.
     """
-    if layout not in LAYOUTS:
-        raise ExportError(f"layout: got {layout!r}, allowed are {', '.join(LAYOUTS)}")
+    instance(airfoil, Airfoil, "airfoil", "a bladegen.Airfoil", ExportError)
+    one_of(layout, LAYOUTS, "layout", ExportError)
     title = " ".join(airfoil.name.split()) or "airfoil"
     lines = [title, *LAYOUTS[layout](oriented(airfoil.coordinates))]
-    write_lines(Path(path), lines)
+    write_lines(path_of(path, "path", ExportError), lines)
 
 
 def _write(definition: BladeDefinition, path: Path, layout: str) -> tuple[Finding, ...]:

@@ -33,7 +33,6 @@ __all__ = [
 ]
 
 ROUND = 0.02  # of the chord; an airfoil nearer to its circle than this is round
-SAME_LANDMARKS = 1e-12
 RAMP = 33  # span fractions that resolve a window's rise
 EXTRAPOLATION = "allow_extrapolation=True (--allow-extrapolation) goes beyond the space's data"
 Amount = float | Array
@@ -192,7 +191,9 @@ def deformation_of(
     Raises
     ------
     PerturbationError
-        If there is no space, its landmarks are others, or `t` leaves its data's range.
+        If there is no space, or `t` leaves its data's range.
+    SpaceError
+        If the space cannot be evaluated at these landmarks.
     """
     if space is None:
         raise PerturbationError("t: coordinates need a shape space, such as ShapeSpace.bundled()")
@@ -201,15 +202,10 @@ def deformation_of(
             f"t: got {t.values.shape[1]} coordinates (--pga), the space has {space.dimension} "
             f"modes: give t1 to t{space.dimension}, 0 where one shall stay"
         )
-    if len(space.u) != len(u) or not np.allclose(space.u, u, rtol=0, atol=SAME_LANDMARKS):
-        raise PerturbationError(
-            f"the shape space is of {len(space.u)} landmarks, the blade of {len(u)}, or they are "
-            "spaced otherwise; build the blade with the space's landmarks"
-        )
     beyond = space.outside(t.values)
     if beyond and not allow_extrapolation:
         raise PerturbationError(f"{beyond}; {EXTRAPOLATION}")
-    return Deformation(space, t, window, known_convention(chord_line))
+    return Deformation(space.at(u), t, window, known_convention(chord_line))
 
 
 @dataclass(frozen=True)

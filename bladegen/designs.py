@@ -13,14 +13,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bladegen import draws
+from bladegen.arguments import amount, instance, numbers, one_of, shown, suggestion, whole
 from bladegen.arrays import Array, Indices, Mask, readonly
-from bladegen.deformation import RANGES, AffineChange
+from bladegen.deformation import RANGES, AffineChange, in_units
+from bladegen.draws import Points, Seed, seed_of
 from bladegen.errors import DesignError
 from bladegen.pga import ShapeSpace
 
 __all__ = ["DESIGNS", "Design", "Factors", "factors", "tabulated"]
 
-DIAGONALS = 1024  # of a box; with more factors than ten only so many are swept
+MOST = 10**7  # variants
+MOST_LATIN = 10**6
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,20 +110,29 @@ def factors(
     DesignError
         If a name is unknown, or bounds are reversed or not allowed.
     """
-    bounds = dict(bounds or {})
+    bounds = {} if bounds is None else bounds
+    must = "a mapping such as {'thickness': (0.9, 1.1)}"
+    instance(bounds, Mapping, "bounds", must, DesignError)
+    bounds = dict(bounds)
+    reach = amount(reach, "reach", DesignError)
     if not 0 < reach <= 1:
         raise DesignError(f"reach: got {reach:g}, allowed is more than 0 and at most 1")
     names = [] if space is None else [f"t{j + 1}" for j in range(space.dimension)]
     allowed = [*names, *RANGES]
-    for name, (low, high) in bounds.items():
+    for name, pair in bounds.items():
         if name not in allowed:
-            raise DesignError(f"factor {name!r}: allowed are {', '.join(allowed)}")
+            near = suggestion(name, allowed)
+            raise DesignError(f"factor {name!r}: allowed are {', '.join(allowed)}{near}")
+        if np.shape(numbers(pair, name, DesignError, "two bounds, (low, high)")) != (2,):
+            raise DesignError(f"{name}: got {shown(pair)}, must be two bounds, (low, high)")
+        low, high = pair
         if not low <= high:
             raise DesignError(f"{name}: bounds are {low:g} to {high:g}, must not fall")
-        if name in RANGES and not (RANGES[name][0] <= low and high <= RANGES[name][1]):
-            least, most = RANGES[name]
+        least, most = RANGES.get(name, (-np.inf, np.inf))
+        if not least <= low <= high <= most:
             raise DesignError(
-                f"{name}: bounds are {low:g} to {high:g}, allowed is {least:.4g} to {most:.4g}"
+                f"{name}: bounds are {in_units(name, low)} to {in_units(name, high)}, allowed is "
+                f"{in_units(name, least)} to {in_units(name, most)}"
             )
     lows: list[float] = []
     highs: list[float] = []
@@ -144,45 +157,7 @@ def factors(
     return Factors(tuple(names), np.array(lows), np.array(highs), np.array(spread), extent)
 
 
-Points = Callable[[int, int, int], Array]
 Region = Callable[[Factors, Array], Array]
-
-
-def _sobol(count: int, dimension: int, seed: int) -> Array:
-    from scipy.stats import qmc
-
-    power = int(np.ceil(np.log2(max(count, 1))))  # whole powers of two keep the balance
-    points: Array = qmc.Sobol(dimension, rng=np.random.default_rng(seed)).random_base2(power)
-    return points[:count]
-
-
-def _latin(count: int, dimension: int, seed: int) -> Array:
-    from scipy.stats import qmc
-
-    points: Array = qmc.LatinHypercube(dimension, rng=np.random.default_rng(seed)).random(count)
-    return points
-
-
-def _independent(count: int, dimension: int, seed: int) -> Array:
-    return np.stack([_point(seed, i, 0, dimension) for i in range(count)])
-
-
-def _point(seed: int, index: int, attempt: int, dimension: int) -> Array:
-    """Return the point of the unit cube of one variant at one attempt."""
-    key = np.random.SeedSequence(seed, spawn_key=(index, attempt))
-    point: Array = np.random.Generator(np.random.PCG64(key)).random(dimension)
-    return point
-
-
-def _corners(count: int, dimension: int, seed: int) -> Array:  # noqa: ARG001
-    """Run through the box from corner to opposite corner, along each diagonal in turn."""
-    lines = min(2 ** (dimension - 1), DIAGONALS)
-    line, step = np.arange(count) % lines, np.arange(count) // lines
-    steps = max(1, -(-count // lines) - 1)
-    along = np.clip(step / steps, 0.0, 1.0)
-    bits = (line[:, None] >> np.arange(dimension)) & 1
-    points: Array = np.where(bits == 1, 1.0 - along[:, None], along[:, None])
-    return points
 
 
 def _box(what: Factors, unit: Array) -> Array:
@@ -217,19 +192,27 @@ def _normal(what: Factors, unit: Array) -> Array:
 
 
 DESIGNS: dict[str, tuple[str, Points, Region]] = {
-    "sobol": ("Sobol points (scrambled) in the box of the bounds", _sobol, _box),
-    "lhs": ("a Latin hypercube in the box", _latin, _box),
-    "box": ("independent, uniform in the box", _independent, _box),
-    "ellipsoid": ("independent, uniform in the ellipsoid of the data", _independent, _ellipsoid),
-    "normal": ("independent, normal with the data's covariance", _independent, _normal),
-    "sweep": ("from corner to opposite corner of the box, each diagonal in turn", _corners, _box),
+    "sobol": ("Sobol points (scrambled) in the box of the bounds", draws.sobol, _box),
+    "lhs": ("a Latin hypercube in the box", draws.latin, _box),
+    "box": ("independent, uniform in the box", draws.independent, _box),
+    "ellipsoid": (
+        "independent, in the ellipsoid of the data",
+        draws.independent,
+        _ellipsoid,
+    ),
+    "normal": ("independent, with the data's covariance", draws.independent, _normal),
+    "sweep": (
+        "from corner to opposite corner of the box, each diagonal in turn",
+        draws.corners,
+        _box,
+    ),
 }
 FIXED = ("sweep", "table")  # designs whose points are wanted as they are
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A plan of variants.
+    """A plan of variants, each drawn when it is asked for: a plan of millions takes no memory.
 
     Parameters
     ----------
@@ -239,20 +222,24 @@ class Design:
         One of `DESIGNS`, or "table".
     seed : int
         Of the draws, not negative.
-    values : (count, d) array
-        Where each variant lies, first attempts.
+    count : int
+        How many variants.
+    table : (count, d) array, optional
+        Where each variant of a "table" lies.
     """
 
     what: Factors
     kind: str
     seed: int
-    values: Array = field(repr=False)
+    count: int
+    table: Array | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "values", readonly(self.values))
+        if self.table is not None:
+            object.__setattr__(self, "table", readonly(self.table))
 
     @classmethod
-    def of(cls, what: Factors, kind: str, count: int, seed: int) -> "Design":
+    def of(cls, what: Factors, kind: str, count: int, seed: Seed) -> "Design":
         """Plan `count` variants.
 
         Raises
@@ -260,17 +247,32 @@ class Design:
         DesignError
             If there is no such kind, or count or seed are out of range.
         """
-        if kind not in DESIGNS:
-            raise DesignError(f"design: got {kind!r}, allowed are {', '.join(DESIGNS)}")
-        if not 1 <= count <= 10**7:
-            raise DesignError(f"count: got {count}, allowed is 1 to 10000000")
-        if seed < 0:
-            raise DesignError(f"seed: got {seed}, must not be negative")
-        _, points, region = DESIGNS[kind]
-        return cls(what, kind, seed, region(what, points(count, len(what.names), seed)))
+        one_of(kind, DESIGNS, "design", DesignError)
+        count = whole(count, "count", DesignError)
+        if not 1 <= count <= MOST:
+            raise DesignError(f"count: got {count}, allowed is 1 to {MOST}")
+        if kind == "lhs" and count > MOST_LATIN:
+            raise DesignError(
+                f"count: got {count}, a Latin hypercube is drawn whole: allowed is 1 to "
+                f"{MOST_LATIN}; sobol takes any number"
+            )
+        return cls(what, kind, seed_of(seed), count)
 
     def __len__(self) -> int:
-        return len(self.values)
+        return self.count
+
+    def at(self, index: Indices) -> Array:
+        """Return where variants lie, their first attempts, (b, d)."""
+        if self.table is not None:
+            return self.table[index]
+        _, points, region = DESIGNS[self.kind]
+        unit = points(np.asarray(index), self.count, len(self.what.names), self.seed)
+        return region(self.what, unit)
+
+    @property
+    def values(self) -> Array:
+        """Where all variants lie, first attempts, (count, d)."""
+        return self.at(np.arange(self.count))
 
     @property
     def redraws(self) -> bool:
@@ -281,7 +283,7 @@ class Design:
         """Return other values (m, d) of some variants: independent draws in the same region."""
         region = DESIGNS[self.kind][2]
         dimension = len(self.what.names)
-        unit = [_point(self.seed, int(i), attempt, dimension) for i in index]
+        unit = [draws.point(self.seed, int(i), attempt, dimension) for i in index]
         return region(self.what, np.stack(unit))
 
 
@@ -307,7 +309,11 @@ def tabulated(space: ShapeSpace | None, columns: Mapping[str, Sequence[float] | 
     if unknown or not names:
         given = unknown[0] if unknown else "no factor"
         raise DesignError(f"table: got {given!r}, allowed columns are {', '.join(allowed)}")
-    values = np.stack([np.asarray(columns[name], dtype=np.float64) for name in names], axis=1)
+    lists = [numbers(columns[name], f"table: {name}", DesignError) for name in names]
+    if len({column.shape for column in lists}) > 1 or lists[0].ndim != 1:
+        lengths = ", ".join(f"{n}: {c.size}" for n, c in zip(names, lists, strict=True))
+        raise DesignError(f"table: columns must be lists of one length, got {lengths}")
+    values = np.stack(lists, axis=1)
     bad = np.argwhere(~np.isfinite(values))
     if bad.size:
         row, column = bad[0]
@@ -319,10 +325,10 @@ def tabulated(space: ShapeSpace | None, columns: Mapping[str, Sequence[float] | 
         wrong = np.flatnonzero((column < low) | (column > high))
         if wrong.size:
             raise DesignError(
-                f"table: row {wrong[0] + 1}, {name}: got {column[wrong[0]]:g}, allowed is "
-                f"{low:.4g} to {high:.4g}"
+                f"table: row {wrong[0] + 1}, {name}: got {in_units(name, column[wrong[0]])}, "
+                f"allowed is {in_units(name, low)} to {in_units(name, high)}"
             )
     known = factors(space, {name: RANGES[name] for name in names if name in RANGES})
     at = [known.names.index(name) for name in names]
     what = Factors(tuple(names), known.low[at], known.high[at], known.spread[at], known.reach)
-    return Design(what, "table", 0, values)
+    return Design(what, "table", 0, len(values), values)

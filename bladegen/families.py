@@ -13,12 +13,14 @@ from typing import Any
 
 import numpy as np
 
+from bladegen.arguments import instance, one_of, whole
 from bladegen.arrays import Array, Indices, Mask
 from bladegen.batch import FAULTS, Batch, SectionBatch
 from bladegen.blade import Blade
 from bladegen.chord_lines import KEPT, known_convention
 from bladegen.deformation import RANGES, AffineChange, Window
 from bladegen.designs import Design, factors
+from bladegen.draws import Seed
 from bladegen.errors import FamilyError
 from bladegen.files import safe_stem
 from bladegen.pga import ShapeSpace
@@ -102,13 +104,23 @@ class Family:
     chord_line: str = KEPT
 
     def __post_init__(self) -> None:
-        if self.invalid not in POLICIES:
-            raise FamilyError(f"invalid: got {self.invalid!r}, allowed are {', '.join(POLICIES)}")
-        if self.tries < 1:
+        must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
+        instance(self.blade, Blade, "blade", must, FamilyError)
+        instance(self.window, Window, "window", "a bladegen.Window(start, end)", FamilyError)
+        one_of(self.invalid, POLICIES, "invalid", FamilyError)
+        if whole(self.tries, "tries", FamilyError) < 1:
             raise FamilyError(f"tries: got {self.tries}, must be at least 1")
         known_convention(self.chord_line)
-        if self.space is not None:  # the same test and the same words as for one variant
-            self.blade.untested(self.space, np.zeros(self.space.dimension), AffineChange())
+        if self.space is not None:
+            must = "a ShapeSpace, such as bladegen.ShapeSpace.bundled()"
+            instance(self.space, ShapeSpace, "space", must, FamilyError)
+            object.__setattr__(self, "space", self.space.at(self.blade.u))
+
+    def __repr__(self) -> str:
+        return (
+            f"<Family of {self.blade.name}: {len(self)} variants, {self.design.kind}, seed "
+            f"{self.design.seed}, of {', '.join(self.design.what.names)}>"
+        )
 
     def __getstate__(self) -> dict[str, Any]:
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
@@ -139,7 +151,7 @@ class Family:
             Measure areas, centroids and so on (`Batch.measures`).
         """
         made: dict[str, Any] = {"dtype": dtype, "measured": measured}
-        values = self.design.values[index]
+        values = self.design.at(index)
         batch = self._sections.evaluate(*self._split(values), **made)
         refused = self._reasons(values, batch.faults, batch.relative_thickness)
         values, attempts, reasons = self._redrawn(index, values, refused)
@@ -155,6 +167,7 @@ class Family:
 
     def variant(self, place: int) -> Blade:
         """Return one variant as a blade, whether it is sound or not."""
+        place = whole(place, "variant", FamilyError)
         if not 0 <= place < len(self):
             raise FamilyError(f"variant: got {place}, allowed is 0 to {len(self) - 1}")
         return self._blade(place, self._drawn(np.array([place]))[0])
@@ -182,7 +195,7 @@ class Family:
 
     def _drawn(self, index: Indices) -> Array:
         """Return the values (b, d) of variants, after all redrawing."""
-        values = self.design.values[index]
+        values = self.design.at(index)
         return self._redrawn(index, values, self._tested(values))[0]
 
     def _redrawn(
@@ -228,7 +241,7 @@ def family(
     space: ShapeSpace | None = None,
     *,
     count: int = 100,
-    seed: int = 0,
+    seed: Seed = 0,
     design: str | Design = "ellipsoid",
     bounds: Mapping[str, tuple[float, float]] | None = None,
     reach: float = 1.0,
@@ -246,8 +259,11 @@ def family(
         The baseline.
     space : ShapeSpace, optional
         Modes of deformation, such as `ShapeSpace.bundled()`; all its coordinates vary.
-    count, seed : int
-        How many variants, and the seed of the draws: variant i is the same for the same seed.
+    count : int
+        How many variants.
+    seed : int, None or anything that `numpy.random.default_rng` takes
+        Of the draws: variant i is the same for the same number.  A generator gives such a number
+        and moves on, None takes a fresh one; `Family.design.seed` and the manifest hold it.
     design : str or Design
         One of `designs.DESIGNS`, or a design of one's own (`designs.tabulated`).
     bounds : mapping of str to (low, high), optional
@@ -273,6 +289,11 @@ def family(
     >>> [variant.name for variant in bg.family(blade, bg.ShapeSpace.bundled(), count=2, seed=7)]
     ['dtu10mw-00000', 'dtu10mw-00001']
     """
+    must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
+    instance(blade, Blade, "blade", must, FamilyError)
+    if space is not None:
+        must = "a ShapeSpace, such as bladegen.ShapeSpace.bundled(), or None"
+        instance(space, ShapeSpace, "space", must, FamilyError)
     if blade.mirrored:
         raise FamilyError(
             f"{blade.name}: families are made of the blade, not of its mirror image; mirror their "
@@ -284,7 +305,7 @@ def family(
         blade,
         space,
         design,
-        window or Window.beyond_circles(blade.definition.stations),
+        Window.beyond_circles(blade.definition.stations) if window is None else window,
         blade.stations(spans),
         invalid,
         tries,

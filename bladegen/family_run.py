@@ -18,6 +18,7 @@ import numpy as np
 from bladegen import exporters, polygons
 from bladegen.arrays import Array, Indices
 from bladegen.blade import Blade
+from bladegen.draws import WIDEST
 from bladegen.errors import ExportError, FamilyError, PerturbationError, PromiseError
 from bladegen.families import BLOCK, Block, Family
 from bladegen.family_files import FLOAT_TYPES, FamilyFolder, sections_digest
@@ -231,7 +232,7 @@ def _rows(family: Family, block: Block) -> dict[str, Any]:
         "valid": block.valid,
         "reason": list(block.reasons),
         "attempts": block.attempts,
-        "seed": np.full(count, family.design.seed),
+        "seed": _seeds(family.design.seed, count),
     }
     for name, column in zip(family.design.what.names, block.values.T, strict=True):
         degrees = name == "twist"
@@ -247,6 +248,11 @@ def _rows(family: Family, block: Block) -> dict[str, Any]:
     for name, values in zip(polygons.MEASURES, np.moveaxis(batch.measures, -1, 0), strict=True):
         rows[f"section_{name}_{UNITS[name]}"] = values
     return rows
+
+
+def _seeds(seed: int, count: int) -> Any:
+    """Return a seed's column; as text if it has more digits than a column of numbers holds."""
+    return np.full(count, seed, dtype=np.int64) if seed < WIDEST else [str(seed)] * count
 
 
 def _faults(order: Order, block: Block) -> dict[int, str]:

@@ -12,11 +12,15 @@ from typing import Any
 import numpy as np
 
 from bladegen import __version__
+from bladegen.arrays import Array
 from bladegen.blade import Blade
+from bladegen.designs import Design
 from bladegen.families import Family
 from bladegen.pga import ShapeSpace
 
 __all__ = ["fingerprint", "identity"]
+
+FEW = 64  # variants of a plan of any length that tell whether libraries draw as they did
 
 
 def fingerprint(value: Any) -> str:
@@ -71,7 +75,7 @@ def identity(family: Family) -> dict[str, Any]:
                 design.what.names, design.what.low, design.what.high, strict=True
             )
         },
-        "design_fingerprint": fingerprint(design.values),
+        "design_fingerprint": fingerprint(_first(design)),
         "window": [family.window.start, family.window.end],
         "chord_line": family.chord_line,
         "spans": len(family.eta),
@@ -79,6 +83,13 @@ def identity(family: Family) -> dict[str, Any]:
         "tries": family.tries,
         "thinnest": family.thinnest,
     }
+
+
+def _first(design: Design) -> Array:
+    """Return where variants of a design lie: all of a table, the first ones of what is drawn."""
+    return (
+        design.values if design.table is not None else design.at(np.arange(min(FEW, len(design))))
+    )
 
 
 def _space(space: ShapeSpace) -> str:

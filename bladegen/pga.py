@@ -6,8 +6,9 @@ the principal modes; a shape of the learned manifold is exp(mean, sum_k t_k mode
 Fletcher, Lu & Joshi 2003).  Coordinates are radians: |t| is the distance from the mean.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,8 @@ from bladegen.arrays import Array, readonly
 from bladegen.errors import GeometryError, SpaceError
 from bladegen.files import require_suffix
 from bladegen.landmarks import landmark_parameters
+from bladegen.saved_spaces import NO_SPREAD, ORTHONORMAL, problem_of
+from bladegen.sections import SectionSplines
 
 __all__ = ["ShapeSpace"]
 
@@ -26,9 +29,9 @@ ARRAYS = ("u", "mean", "modes", "variances", "coordinates")
 CHUNK = 1000  # shapes handled at once: bounds memory to some tens of megabytes
 TOLERANCE = 1e-10  # mean tangent at the Karcher mean [rad]
 STEPS = 100
-ORTHONORMAL = 1e-8  # saved bases are orthonormal to rounding
-NO_SPREAD = 1e-9  # rad; shapes that vary less along a mode do not vary along it
-FARTHEST = np.pi / np.sqrt(2.0)  # rad, the distance at which both principal angles are 90 degrees
+SAME_LANDMARKS = 1e-12
+HALVED = 16  # times the error of a cubic spline through half of the landmarks is that of all
+COARSE = 1e-3  # of a shape's root mean square size; splines must be right to this share
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +45,8 @@ class ShapeSpace:
     mean : (n, 2) array
         Karcher mean: an orthonormal basis.
     modes : (r, n, 2) array
-        Principal tangent vectors at the mean: orthonormal and horizontal.
+        Principal tangent vectors at the mean: horizontal, and orthonormal at the landmarks
+        that the space was learned at (see `at`).
     variances : (q,) array
         Variance along all principal directions, largest first [rad^2]; q >= r.
     coordinates : (m, r) array
@@ -144,7 +148,7 @@ class ShapeSpace:
             no mean, modes and spread.
         """
         arrays, about = load_arrays(path_of(path, "space", SpaceError), ARRAYS)
-        problem = _problem(arrays)
+        problem = problem_of(arrays)
         if problem is not None:
             raise SpaceError(f"{path}: is no shape space: {problem}")
         return cls(**arrays, about=about)
@@ -152,8 +156,63 @@ class ShapeSpace:
     def save(self, path: str | Path) -> None:
         """Write the space to an npz file, with a version and a checksum."""
         where = path_of(path, "path", SpaceError)
+        if self._gram is not None:
+            raise SpaceError(f"{path}: save the space that was learned, not one evaluated from it")
         require_suffix(where, (".npz",))
         save_arrays(where, {name: getattr(self, name) for name in ARRAYS}, self.about)
+
+    def at(self, u: Array) -> "ShapeSpace":
+        """Return the same space of shapes with landmarks at other parameters.
+
+        Mean and modes are functions of the landmark parameter, splines through their own
+        landmarks; they are evaluated at `u`.  A coordinate t moves a shape's contour as it does
+        here, whatever the landmarks: where these lie closer or farther apart the modes are no
+        longer orthonormal, and |t| is no distance there.
+
+        Parameters
+        ----------
+        u : (n,) array
+            Landmark parameters, as `landmarks.landmark_parameters` makes them.
+
+        Raises
+        ------
+        SpaceError
+            If the space's own landmarks are too few for it, or `u` too few for its modes.
+        """
+        if len(u) == len(self.u) and np.allclose(u, self.u, rtol=0, atol=SAME_LANDMARKS):
+            return self
+        self._require_fine()
+        matrix = SectionSplines(self.u).values(np.asarray(u))
+        mean = matrix @ self.mean
+        mean -= mean.mean(axis=0)
+        squares, axes = np.linalg.eigh(mean.T @ mean)
+        if len(u) < self.dimension + 3 or squares[0] < ORTHONORMAL * squares[1]:
+            raise SpaceError(f"{len(u)} landmarks are too few for {self.dimension} modes")
+        scale = (axes / np.sqrt(squares)) @ axes.T
+        modes = matrix @ self.modes @ scale
+        modes -= modes.mean(axis=-2, keepdims=True)
+        mean = mean @ scale
+        return replace(self, u=u, mean=mean, modes=modes - mean @ (mean.T @ modes))
+
+    def _require_fine(self) -> None:
+        """Raise if the space's landmarks are too few to say what lies between them."""
+        columns = np.concatenate([self.mean[None], self.modes])
+        halves = SectionSplines(self.u[::2]).values(self.u) if len(self.u) >= 9 else None
+        missed = np.inf if halves is None else np.abs(halves @ columns[:, ::2] - columns).max()
+        error = float(missed) * np.sqrt(len(self.u)) / HALVED
+        if not error <= COARSE:
+            raise SpaceError(
+                f"space: its {len(self.u)} landmarks are too coarse to be evaluated at others "
+                f"(an error of {error:.1g}, allowed is {COARSE:g} of a shape's size); build the "
+                f"blade with landmarks={len(self.u)} (--landmarks {len(self.u)})"
+            )
+
+    @cached_property
+    def _gram(self) -> Array | None:
+        """The inner products of the modes; None where these are orthonormal."""
+        flat = self.modes.reshape(self.dimension, -1)
+        gram: Array = flat @ flat.T
+        return None if np.abs(gram - np.eye(len(gram))).max() < ORTHONORMAL else gram
 
     @property
     def dimension(self) -> int:
@@ -192,6 +251,8 @@ class ShapeSpace:
         across = np.moveaxis(self.modes, 0, 1).reshape(len(self.mean), -1)
         inner = (points.mT @ across).reshape(*G.shape[:-1], self.dimension, 2)
         t: Array = np.einsum("...arb,...ab->...r", inner, G)
+        if self._gram is not None:
+            t = t @ np.linalg.inv(self._gram)
         return t
 
     def tangent(self, t: Array) -> Array:
@@ -300,59 +361,6 @@ def _karcher_mean(points: Array) -> Array:
         f"Karcher mean of {count} shapes: not converged after {STEPS} steps: the mean tangent is "
         f"{length:.1e} rad, allowed is {TOLERANCE:.1e}"
     )
-
-
-def _problem(arrays: dict[str, Array]) -> str | None:
-    """Say what keeps a file's arrays from being a space, or None."""
-    for name, array in arrays.items():
-        if array.dtype != np.float64 or not np.isfinite(array).all():
-            return f"{name} must be finite numbers in double precision"
-    sizes = {name: len(array) if array.ndim else 0 for name, array in arrays.items()}
-    n, r, m = sizes["u"], sizes["modes"], sizes["coordinates"]
-    wanted = {"u": (n,), "mean": (n, 2), "modes": (r, n, 2), "coordinates": (m, r)}
-    for name, shape in (wanted | {"variances": (sizes["variances"],)}).items():
-        if arrays[name].shape != shape:
-            return f"{name} has the shape {arrays[name].shape}, must be {shape}"
-    if n < 3 or not 1 <= r <= sizes["variances"] or m < 1:
-        return f"{n} landmarks, {r} modes of {sizes['variances']} variances, {m} shapes: too few"
-    return next((said for said, holds in _RULES if not holds(arrays)), None)
-
-
-def _orthonormal(basis: Array) -> bool:
-    """Tell whether columns (n, k) are orthonormal to rounding, none too large to be multiplied."""
-    small = np.abs(basis).max() < 2.0
-    return bool(small and np.abs(basis.T @ basis - np.eye(basis.shape[1])).max() < ORTHONORMAL)
-
-
-_RULES: tuple[tuple[str, Callable[[dict[str, Array]], bool]], ...] = (
-    (
-        "u must increase within 0 to 1",
-        lambda a: bool(a["u"][0] >= 0 and a["u"][-1] <= 1 and np.all(np.diff(a["u"]) > 0)),
-    ),
-    ("mean must be an orthonormal basis", lambda a: _orthonormal(a["mean"])),
-    (
-        "modes must be orthonormal",
-        lambda a: _orthonormal(a["modes"].reshape(len(a["modes"]), -1).T),
-    ),
-    (
-        "modes must be tangent at the mean",
-        lambda a: bool(np.abs(a["mean"].T @ a["modes"]).max() < ORTHONORMAL),
-    ),
-    (
-        f"variances of its modes must be {NO_SPREAD**2:g} to {FARTHEST**2:.3g} rad^2",
-        lambda a: bool(
-            a["variances"][len(a["modes"]) - 1] >= NO_SPREAD**2 and a["variances"][0] <= FARTHEST**2
-        ),
-    ),
-    (
-        "variances must fall and not be negative",
-        lambda a: bool(np.all(np.diff(a["variances"]) <= 0) and a["variances"][-1] >= 0),
-    ),
-    (
-        f"coordinates must lie within {FARTHEST:.3g} rad",
-        lambda a: bool(np.abs(a["coordinates"]).max() <= FARTHEST),
-    ),
-)
 
 
 def _parameters(n: int) -> Array:

@@ -131,3 +131,73 @@ def test_tables_are_taken_as_they_are():
 def test_what_cannot_be_planned_is_refused(make, said):
     with pytest.raises(DesignError, match=said):
         make()
+
+
+@pytest.mark.parametrize("kind", DESIGNS)
+def test_variants_are_drawn_one_by_one_as_they_are_all_at_once(kind):
+    design = Design.of(WHAT, kind, 200, 5)
+    index = np.array([7, 199, 0, 7, 64])
+    assert_array_equal(design.at(index), design.values[index])
+    assert design.at(np.arange(0)).shape == (0, len(WHAT.names))
+
+
+def test_sobol_points_are_scipys_beyond_a_page():
+    from scipy.stats import qmc
+
+    from bladegen.draws import PAGE, sobol
+
+    whole = qmc.Sobol(3, rng=np.random.default_rng(9)).random_base2(16)
+    index = np.array([0, PAGE - 1, PAGE, 3 * PAGE + 5, 2**16 - 1])
+    assert_array_equal(sobol(index, 2**16, 3, 9), whole[index])
+
+
+@pytest.mark.parametrize("kind", [kind for kind in DESIGNS if kind != "lhs"])
+def test_a_plan_of_millions_takes_no_memory(kind):
+    import tracemalloc
+
+    tracemalloc.start()
+    design = Design.of(WHAT, kind, 5_000_000, 1)
+    last = design.at(np.arange(4_999_936, 5_000_000))
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert len(last) == 64
+    assert most < 5e6
+
+
+def test_a_latin_hypercube_is_bounded_and_says_what_is_not():
+    with pytest.raises(DesignError, match="allowed is 1 to 1000000; sobol takes any number"):
+        Design.of(WHAT, "lhs", 5_000_000, 1)
+
+
+def test_seeds_are_numpys():
+    def first(seed):
+        return Design.of(WHAT, "box", 3, seed).values
+
+    assert_array_equal(first(7), first(np.int32(7)))
+    rng = np.random.default_rng(3)
+    one, two = Design.of(WHAT, "box", 3, rng), Design.of(WHAT, "box", 3, rng)
+    assert one.seed != two.seed  # the generator has moved on
+    assert_array_equal(one.values, first(one.seed))
+    assert Design.of(WHAT, "box", 3, np.random.default_rng(3)).seed == one.seed
+    assert Design.of(WHAT, "box", 3, np.random.SeedSequence(3)).seed == one.seed
+    assert Design.of(WHAT, "box", 3, np.random.PCG64(3)).seed == one.seed
+    assert first(2**100).shape == (3, len(WHAT.names))
+    assert Design.of(WHAT, "box", 3, None).seed != Design.of(WHAT, "box", 3, None).seed
+    for bad in (-1, 2.5, "7", True, [1], {}):
+        with pytest.raises(DesignError, match="seed: got"):
+            Design.of(WHAT, "box", 3, bad)
+
+
+def test_bounds_that_are_none_are_refused():
+    for bounds, said in (
+        ({"thickness": 1}, r"thickness: got 1, must be two bounds, \(low, high\)"),
+        ({"thickness": (1, 2, 3)}, "must be two bounds"),
+        ({"thicknes": (1, 2)}, "did you mean thickness"),
+        ({"twist": (-60, 60)}, r"-60 rad \(-3\.44e\+03 deg\)"),
+        ([("thickness", (1, 2))], "bounds: got .* must be a mapping"),
+        ({"t1": (np.nan, 1)}, "must not fall"),
+    ):
+        with pytest.raises(DesignError, match=said):
+            factors(SPACE, bounds)
+    with pytest.raises(DesignError, match="lists of one length, got t1: 2, chord: 1"):
+        tabulated(SPACE, {"t1": [0.0, 0.1], "chord": [1.0]})

@@ -6,8 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen import grassmann
+import bladegen as bg
+from bladegen import affine, grassmann
+from bladegen.database import baselines
 from bladegen.errors import GeometryError, SpaceError
+from bladegen.landmarks import clustered, cosine, landmark_parameters, landmarks
 from bladegen.pga import ShapeSpace
 from strategies import SEEDS, random_points, random_tangent
 
@@ -191,3 +194,38 @@ def test_modes_along_which_nothing_varies_are_refused():
     points = random_points(np.random.default_rng(2), 1, 12)
     with pytest.raises(SpaceError, match="got 1, the shapes vary in 0 directions only"):
         ShapeSpace.fit(np.repeat(points, 5, axis=0), modes=1)
+
+
+@pytest.mark.parametrize("spacing", [clustered, cosine])
+def test_a_coordinate_moves_a_contour_alike_whatever_its_landmarks(spacing):
+    """A blade of other landmarks, perturbed, is the perturbed blade at these landmarks."""
+    space, t, eta = bg.ShapeSpace.bundled(), [0.06, -0.05, 0.03, 0.02], np.array([0.3, 0.9])
+    definition = bg.read("iea15mw")
+    fine = bg.Blade.from_definition(definition)
+    other = bg.Blade.from_definition(definition, landmarks=201, spacing=spacing)
+    wanted = fine.perturbed(space, t).profiles(eta, other.u)
+    moved = np.abs(wanted - fine.profiles(eta, other.u)).max()
+    assert moved > 0.02
+    assert_allclose(other.perturbed(space, t).profiles(eta), wanted, atol=0.01 * moved)
+
+
+def test_an_evaluated_space_encodes_what_it_decodes_and_keeps_its_bounds(tmp_path):
+    space = bg.ShapeSpace.bundled()
+    assert space.at(space.u) is space
+    other = space.at(landmark_parameters(101))
+    t = np.array([[0.06, -0.05, 0.03, 0.02], [0.0, 0.1, 0.0, -0.1]])
+    assert_allclose(other.encode(other.decode(t)), t, atol=1e-12)
+    assert_allclose(other.mean.T @ other.mean, np.eye(2), atol=1e-12)
+    assert_allclose(other.mean.sum(axis=0), 0.0, atol=1e-12)
+    assert_allclose(other.lower, space.lower)
+    with pytest.raises(SpaceError, match="save the space that was learned"):
+        other.save(tmp_path / "other.npz")
+    with pytest.raises(SpaceError, match="5 landmarks are too few for 4 modes"):
+        space.at(landmark_parameters(5))
+
+
+def test_a_coarse_space_serves_its_own_landmarks_alone():
+    shapes = np.stack([landmarks(xy, 21) for xy in baselines().values()])
+    coarse = bg.ShapeSpace.fit(affine.standardise(shapes)[0], modes=2)
+    with pytest.raises(SpaceError, match=r"its 21 landmarks are too coarse .*--landmarks 21"):
+        coarse.at(landmark_parameters(401))

@@ -21,7 +21,7 @@ from bladegen.cli_options import (
 from bladegen.cli_perturb import ChordLine
 from bladegen.errors import FamilyError
 from bladegen.stopping import Stopped
-from bladegen.terminal import print_table, variants_bar
+from bladegen.terminal import print_table, remark, variants_bar
 
 __all__ = ["family"]
 
@@ -113,7 +113,14 @@ def family(
     )
     try:
         with _cluster(dask) as client, variants_bar(len(planned)) as progress:
-            made = run(order, jobs=jobs, client=client, resume=resume, progress=progress)
+            made = run(
+                order,
+                jobs=jobs,
+                client=client,
+                resume=resume,
+                progress=progress,
+                foretold=lambda forecast: remark(f"still to be made: {forecast}"),
+            )
     except Stopped as stop:
         raise stop.saying(f"{output}: the same command with --resume goes on; ") from None
     _summary(order, made)

@@ -15,8 +15,8 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ import numpy as np
 from bladegen.errors import ExportError, FamilyError
 from bladegen.families import BLOCK, Block
 from bladegen.files import alone, folder, replacing
+from bladegen.forecasts import NoRoomError
 from bladegen.identity import differences
 
 __all__ = ["FamilyFolder", "read_manifest", "sections_digest"]
@@ -107,11 +108,37 @@ class FamilyFolder:
         """
         return alone(folder(self.path), "family")
 
+    @contextmanager
+    def undone_if_refused(self) -> Iterator[None]:
+        """Take away what was begun for a family that is refused, unless it was there before."""
+        fresh = not self.path.exists() or not any(
+            entry.exists() for entry in (self.description, self.manifest, self.store)
+        )
+        try:
+            yield
+        except NoRoomError:
+            if fresh:
+                for entry in (self.store, self.blades, self.parts):
+                    shutil.rmtree(entry, ignore_errors=True)
+                self.description.unlink(missing_ok=True)
+            raise
+
+    def bytes_of(self, number: int, names: Sequence[str]) -> int:
+        """Return the size of a whole block's part, and of the files of its variants."""
+        files = [self.part(number)]
+        for name in names:
+            for found in self.blades.glob(f"{name}[._-]*"):
+                files += (
+                    [found] if found.is_file() else [p for p in found.rglob("*") if p.is_file()]
+                )
+        return sum(file.stat().st_size for file in files)
+
     def open_blocks(self, count: int) -> list[int]:
         """Return the numbers of the blocks that are not whole yet."""
         if self.manifest.exists():
             return []
-        return [i for i in range(-(-count // self.block)) if not self.part(i).exists()]
+        there = {path.name for path in self.parts.glob("part-*.parquet")}
+        return [i for i in range(-(-count // self.block)) if self.part(i).name not in there]
 
     def make_sections(self, eta: Any, u: Any, count: int, dtype: str) -> None:
         """Make the empty store of sections, if it is not there."""

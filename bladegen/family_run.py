@@ -6,26 +6,29 @@ Blocks do not know of each other, so who makes them and in what order changes no
 import logging
 import os
 import signal
+import time
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bladegen import exporters, polygons
+from bladegen import exporters
+from bladegen.arguments import whole
 from bladegen.arrays import Array, Indices
 from bladegen.blade import Blade
-from bladegen.draws import WIDEST
 from bladegen.errors import ExportError, FamilyError, PerturbationError, PromiseError
 from bladegen.families import BLOCK, Block, Family
-from bladegen.family_files import FLOAT_TYPES, FamilyFolder, sections_digest
+from bladegen.family_files import FLOAT_TYPES, FamilyFolder
+from bladegen.family_rows import drawn_again, rows_of
 from bladegen.files import digest_of, folder
+from bladegen.forecasts import Forecast, free_bytes, require_room
 from bladegen.identity import fingerprint, identity
 from bladegen.net import fitted
-from bladegen.spanwise import UNITS
 
 __all__ = ["Order", "run"]
 
@@ -33,6 +36,7 @@ logger = logging.getLogger(__name__)
 
 TIMESTAMP = "1970-01-01T00:00:00"  # in STEP files, so that the same blade makes the same bytes
 FEW = 8  # variants in a block that writes files for each
+AHEAD = 4  # blocks a worker that are handed out before they can begin: plans may be long
 RESTARTS = 5  # of a pool whose worker died, without any block done in between
 
 
@@ -110,6 +114,7 @@ def run(
     client: Any = None,
     resume: bool = False,
     progress: Callable[[int], None] = lambda _: None,
+    foretold: Callable[[Forecast], None] = lambda _: None,
 ) -> int:
     """Write a family; return how many variants were made now.
 
@@ -125,21 +130,27 @@ def run(
         Go on with what an earlier run left.
     progress : callable
         Told how many variants are whole, each time some are.
+    foretold : callable
+        Told once, when the first block is whole, what the others will take.
 
     Raises
     ------
     FamilyError
-        If the folder holds another family, or workers keep dying.
+        If the folder holds another family, the disk has no room for this one, or workers keep
+        dying.
     ExportError
         If a file cannot be written, or another run writes into the folder.
     """
-    if jobs < 1:
+    if whole(jobs, "jobs", FamilyError) < 1:
         raise FamilyError(f"jobs: got {jobs}, must be at least 1")
     place, family = order.place, order.family
-    with place.alone():
+    if not resume:
+        require_room(order.target, len(family), _bytes(order, len(family)), at_least=True)
+    with place.alone(), place.undone_if_refused():
         place.begin(order.identity, resume=resume)
         left = order.blocks()
         before = done = len(family) - _variants(order, left)
+        require_room(order.target, len(family) - done, _bytes(order, len(family) - done))
         progress(done)
         logger.info(
             "%s: %d of %d variants are there, %d blocks to make",
@@ -154,13 +165,16 @@ def run(
                 folder(place.blades)
             _block(order, np.arange(0))  # compiles, for all workers
             if client is not None:
-                made = _on_cluster(order, left, client)
+                made, several = _on_cluster(order, left, client), len(client.nthreads())
             elif jobs > 1 and len(left) > 1:
-                made = _in_processes(order, left, min(jobs, len(left)))
+                several = min(jobs, len(left))
+                made = _in_processes(order, left, several)
             else:
-                made = (_make(order, number) for number in left)
+                made, several = (_make(order, number) for number in left), 1
             with closing(made):
-                for number, again in made:
+                for number, again, seconds in made:
+                    if done == before:
+                        foretold(_foreseen(order, left, number, seconds / several))
                     done += _variants(order, [number])
                     progress(done)
                     logger.info(
@@ -176,38 +190,49 @@ def run(
     return done - before
 
 
+def _bytes(order: Order, variants: int) -> int:
+    """Return how many bytes the sections of some variants take."""
+    one = len(order.family.eta) * len(order.family.blade.u) * 3
+    return variants * one * np.dtype(FLOAT_TYPES[order.dtype]).itemsize
+
+
+def _foreseen(order: Order, left: list[int], made: int, seconds: float) -> Forecast:
+    """Return what the blocks that are left take, by one that is whole; raise without room."""
+    count, names = _variants(order, [made]), []
+    if order.suffixes:
+        first = made * order.block
+        names = [order.family.name(place) for place in range(first, first + count)]
+    one = order.place.bytes_of(made, names) + _bytes(order, count)
+    others = _variants(order, left) - count
+    needed = one * others // count
+    require_room(order.target, others, needed)
+    blocks = others / order.block
+    return Forecast(others, needed, free_bytes(order.target), seconds * blocks)
+
+
 def _variants(order: Order, blocks: list[int]) -> int:
     """Return how many variants some blocks hold."""
     size, count = order.block, len(order.family)
     return sum(min(size, count - number * size) for number in blocks)
 
 
-Made = tuple[int, list[str]]  # a block's number, and which variants were drawn again and why
+Made = tuple[int, list[str], float]  # a block's number, what was drawn again and why, seconds
 
 
 def _make(order: Order, number: int) -> Made:
     """Make one block, whole."""
     from threadpoolctl import threadpool_limits
 
-    family = order.family
+    family, start = order.family, time.monotonic()
     index = np.arange(number * order.block, min((number + 1) * order.block, len(family)))
     with threadpool_limits(1):  # the same sums in the same order, whatever the machine
         block = _block(order, index)
-        rows = _rows(family, block)
+        rows = rows_of(family, block)
         faults = _faults(order, block)
         for suffix in order.suffixes:
             rows |= _exported(order, block, suffix, faults)
     order.place.write_block(number, block, rows)
-    return number, _drawn_again(family, block)
-
-
-def _drawn_again(family: Family, block: Block) -> list[str]:
-    """Say which variants of a block were drawn more than once, and why."""
-    return [
-        f"{family.name(int(block.index[row]))}: {block.attempts[row]} draws, the first refused: "
-        f"{block.refused[row]}"
-        for row in np.flatnonzero(block.attempts > 1)
-    ]
+    return number, drawn_again(family, block), time.monotonic() - start
 
 
 def _block(order: Order, index: Indices) -> Block:
@@ -216,43 +241,6 @@ def _block(order: Order, index: Indices) -> Block:
 
     with threadpool_limits(1):
         return order.family.block(index, dtype=FLOAT_TYPES[order.dtype], measured=True)
-
-
-def _rows(family: Family, block: Block) -> dict[str, Any]:
-    """Return the manifest's columns for a block."""
-    batch = block.batch
-    assert batch.measures is not None  # _make asked for them
-    count = len(block.index)
-    few = (batch.sections[i : i + FEW] for i in range(0, count, FEW))  # bounds memory
-    measured = [polygons.volume_and_area(sections.astype(np.float64)) for sections in few]
-    volume, surface = (np.concatenate(parts) for parts in zip(*measured, strict=True))
-    rows: dict[str, Any] = {
-        "index": block.index,
-        "name": [family.name(int(place)) for place in block.index],
-        "valid": block.valid,
-        "reason": list(block.reasons),
-        "attempts": block.attempts,
-        "seed": _seeds(family.design.seed, count),
-    }
-    for name, column in zip(family.design.what.names, block.values.T, strict=True):
-        degrees = name == "twist"
-        rows["twist_deg" if degrees else name] = np.degrees(column) if degrees else column
-    rows |= {
-        "volume_m3": volume,
-        "surface_m2": surface,
-        "sections_sha256": [sections_digest(sections) for sections in batch.sections],
-        "section_chord_m": batch.chord,
-        "section_twist_deg": np.degrees(batch.twist),
-        "section_relative_thickness": batch.relative_thickness,
-    }
-    for name, values in zip(polygons.MEASURES, np.moveaxis(batch.measures, -1, 0), strict=True):
-        rows[f"section_{name}_{UNITS[name]}"] = values
-    return rows
-
-
-def _seeds(seed: int, count: int) -> Any:
-    """Return a seed's column; as text if it has more digits than a column of numbers holds."""
-    return np.full(count, seed, dtype=np.int64) if seed < WIDEST else [str(seed)] * count
 
 
 def _faults(order: Order, block: Block) -> dict[int, str]:
@@ -311,21 +299,27 @@ def _make_here(number: int) -> Made:
 
 def _in_processes(order: Order, left: list[int], jobs: int) -> Generator[Made]:
     """Make blocks in processes of this machine; begin again with what a dead one left."""
-    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
     from concurrent.futures.process import BrokenProcessPool
     from multiprocessing import active_children, get_context
 
     restarts, others = 0, set(active_children())
-    while left:
+    open_blocks = dict.fromkeys(left)
+    while open_blocks:
         pool = ProcessPoolExecutor(
             jobs, mp_context=get_context("spawn"), initializer=_start, initargs=(order, os.getpid())
         )
+        coming = iter(list(open_blocks))
         try:
-            for task in as_completed([pool.submit(_make_here, number) for number in left]):
-                made = task.result()
-                left = [other for other in left if other != made[0]]
-                restarts = 0
-                yield made
+            waiting = {pool.submit(_make_here, number) for number in islice(coming, AHEAD * jobs)}
+            while waiting:
+                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                for task in finished:
+                    made = task.result()
+                    del open_blocks[made[0]]
+                    restarts = 0
+                    waiting |= {pool.submit(_make_here, number) for number in islice(coming, 1)}
+                    yield made
         except BrokenProcessPool:
             restarts += 1
             logger.warning("%s: a worker process died, another one goes on", order.target)
@@ -347,9 +341,16 @@ def _on_cluster(order: Order, left: list[int], client: Any) -> Generator[Made]:
     from distributed import as_completed
 
     shared = client.scatter(order, broadcast=True)
-    tasks = [client.submit(_make, shared, number, pure=False, retries=3) for number in left]
+    coming, tasks = iter(left), as_completed()
+
+    def submit(count: int) -> None:
+        for number in islice(coming, count):
+            tasks.add(client.submit(_make, shared, number, pure=False, retries=3))
+
+    submit(AHEAD * max(1, len(client.nthreads())))
     try:
-        for task in as_completed(tasks):
+        for task in tasks:
+            submit(1)
             yield task.result()
     except (ExportError, FamilyError):
         raise
@@ -358,4 +359,4 @@ def _on_cluster(order: Order, left: list[int], client: Any) -> Generator[Made]:
             f"{order.target}: the cluster failed: {type(error).__name__}: {error}; --resume goes on"
         ) from None
     finally:
-        client.cancel(tasks)
+        client.cancel(list(tasks.futures))

@@ -7,27 +7,18 @@ at all.
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from bladegen import cad, cad_files, grid, grid_files, mesh, preview, writers
-from bladegen.arguments import (
-    amount,
-    function,
-    instance,
-    one_of,
-    path_of,
-    suggestion,
-    whole,
-)
-from bladegen.arrays import Array
+from bladegen.arguments import instance, path_of, suggestion
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, Finding, SizeError, ToleranceError
 from bladegen.files import replacing
-from bladegen.tips import Tip, flat_tip
+from bladegen.options import UNITS, Options
 
 __all__ = [
     "FORMATS",
@@ -45,71 +36,7 @@ __all__ = [
 
 logger = logging.getLogger(__name__)
 
-UNITS = {"m": 1.0, "mm": 1000.0}
 STL_HEADER = 80  # bytes of free text at the start of a binary STL file
-TOLERANCES = 1e-6, 0.05  # m; millimetres that are given for metres leave the range
-
-
-@dataclass(frozen=True)
-class Options:
-    """How products are made; each format takes what concerns it.
-
-    Parameters
-    ----------
-    tolerance : float
-        Solids: largest distance to the blade's sections [m].
-    sections : int, optional
-        Solids: exactly so many sections instead of as many as the tolerance needs.
-    stations : int
-        Meshes: how many sections.
-    tip : callable
-        Solids, meshes and grids: `tips.flat_tip` or `tips.round_tip`.
-    unit : str
-        Meshes, PLOT3D and VTK: "m" or "mm".  STEP and 3MF are always in millimetres, GLB and
-        CGNS in metres.
-    step_schema : str
-        STEP: "ap242" or "ap214".
-    timestamp : str, optional
-        STEP and IGES: the time in the header, ISO 8601, instead of now.
-    largest : int, optional
-        Solids: the most bytes that a file may take.
-    spans : (k,) array, optional
-        Solids: sections to begin with, such as those of a blade that is alike.
-    spacing : Spacing
-        Grids: how many points, and cell sizes where it matters.
-    polars, reynolds : optional
-        Definitions: where polars are from, as for `writers.write`.
-    """
-
-    tolerance: float = cad.DEFAULT_TOLERANCE
-    sections: int | None = None
-    stations: int = mesh.SECTIONS
-    tip: Tip = flat_tip
-    unit: str = "m"
-    step_schema: str = "ap242"
-    timestamp: str | None = None
-    largest: int | None = None
-    spans: Array | None = None
-    spacing: grid.Spacing = field(default_factory=grid.Spacing)
-    polars: str | None = None
-    reynolds: float | None = None
-
-    def __post_init__(self) -> None:
-        one_of(self.unit, UNITS, "unit", ExportError)
-        one_of(self.step_schema, cad_files.STEP_SCHEMAS, "step_schema", ExportError)
-        tolerance, (least, most) = amount(self.tolerance, "tolerance", ExportError), TOLERANCES
-        if not least <= tolerance <= most:
-            raise ExportError(
-                f"tolerance: got {tolerance:g} m, allowed is {least:g} to {most:g} m "
-                f"({least * 1e3:g} to {most * 1e3:g} mm); 0.3 mm is tolerance=3e-4 in Python, "
-                "--tolerance 0.3mm in the shell"
-            )
-        whole(self.stations, "stations", ExportError)
-        if self.sections is not None:
-            whole(self.sections, "sections", ExportError)
-        function(self.tip, "tip", "bladegen.tips.flat_tip or round_tip", ExportError)
-        must = "a bladegen.grid.Spacing"
-        instance(self.spacing, grid.Spacing, "spacing", must, ExportError)
 
 
 @dataclass(frozen=True, eq=False)
@@ -357,14 +284,7 @@ def export(blade: Blade, path: str | Path, **options: Any) -> Path:
     must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
     instance(blade, Blade, "blade", must, ExportError)
     path = path_of(path, "path", ExportError)
-    known = [entry.name for entry in fields(Options)]
-    for name in options:
-        if name not in known:
-            raise ExportError(
-                f"{name}: no option of export, allowed are {', '.join(known)}"
-                f"{suggestion(name, known)}"
-            )
-    write(Products(blade, Options(**options)), path)
+    write(Products(blade, Options.named(options)), path)
     return path
 
 

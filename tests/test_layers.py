@@ -85,6 +85,7 @@ FLOW = [
     "checks",
     "preview",
     "comparison",
+    "options",
     "exporters",
     "plots",
     "combs",

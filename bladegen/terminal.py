@@ -58,6 +58,8 @@ def _made_visible(record: logging.LogRecord) -> bool:
     """Show the names in a message as `errors.visible` has them."""
     record.msg, record.args = visible(record.getMessage()), None
     return True
+
+
 def remark(text: str) -> None:
     """Say something while a command goes on, above its progress."""
     _stderr().print(f"note: {visible(text)}", markup=False, highlight=False, soft_wrap=True)

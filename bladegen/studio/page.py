@@ -20,6 +20,7 @@ from bladegen.studio import charts, recipes
 from bladegen.studio.library import Library
 from bladegen.studio.model import Scene
 from bladegen.studio.state import Control, History, State, controls, from_query, to_query
+from bladegen.studio.visits import Visits
 from bladegen.studio.worker import Job, Made, Worker
 
 __all__ = ["Page", "Shown", "Studio"]
@@ -43,6 +44,8 @@ class Studio:
         Makes files.
     packets : dict
         The latest surface of each tab and its baseline's, by a name that nobody can guess.
+    visits : Visits
+        Page loads that no tab has connected to yet.
     """
 
     folder: Path
@@ -50,6 +53,7 @@ class Studio:
     first: str
     worker: Worker = field(default_factory=Worker)
     packets: dict[str, tuple[bytes, bytes]] = field(default_factory=dict)
+    visits: Visits = field(default_factory=Visits)
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,6 +238,8 @@ class Page:
         )
 
     async def _show(self, shown: Shown, *, refit: bool) -> None:
+        if self.client.is_deleted:  # while this was made; nobody would take it away again
+            return
         self.scene = shown.scene
         self.studio.packets[self.name] = shown.packets
         self._count += 1

@@ -195,6 +195,7 @@ def _application(studio: Studio) -> Any:
         await page.prepared()
         ui.add_css(style)
         build(page)
+        studio.visits.begin(page.client)  # from now on its tab may connect
 
     ui.run_with(
         app,

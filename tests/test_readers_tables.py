@@ -283,6 +283,13 @@ def test_polars_beside_shapes_are_passed_over_and_reported(tmp_path):
         assert "naca.txt: is a second file of naca; naca.dat is taken" in said
 
 
+def test_a_file_of_polars_is_no_shape_of_its_name(tmp_path):
+    path = table(tmp_path, TABLE)
+    (tmp_path / "airfoils" / "naca.dat").write_text("alpha cl\n0 0.1\n1 0.2\n2 0.3\n")
+    said = problems(path)
+    assert "airfoil 'naca': airfoils holds circle; naca.dat holds polars, not a shape" in said
+
+
 def test_files_of_aerodyn_hold_a_reference_point(tmp_path):
     path = table(tmp_path, TABLE)
     file = tmp_path / "airfoils" / "naca.dat"
@@ -598,6 +605,13 @@ def test_older_workbooks_of_numad_are_read(tmp_path):
     said = findings(made)
     assert "circular: is not in airfoils; NuMAD's circle of that name is taken" in said
     assert "1 stations are interp" in said
+
+
+def test_older_workbooks_may_have_their_header_elsewhere(tmp_path):
+    airfoils(tmp_path / "airfoils")
+    rows = numad_stations()["Geometry"]
+    made = bg.read(sheets(tmp_path / "b.xlsx", {"geometry": rows[2:]}))
+    assert_allclose(made.chord.values, [0.8, 1.1, 0.4])
 
 
 def test_bend_and_sweep_of_older_workbooks_are_read(tmp_path):

@@ -104,12 +104,21 @@ def shapes(folder: Path, wanted: Iterable[str], notes: Notes) -> dict[str, Airfo
         entry = entries.get(name) or known.get(_plain(name)) or known.get(_plain(safe_stem(name)))
         if entry is None:
             names = ", ".join(list(entries)[:MAX_NAMES]) or "none"
-            notes.problems.append(f"airfoil {name!r}: {folder.name} holds {names}")
+            notes.problems.append(
+                f"airfoil {name!r}: {folder.name} holds {names}{_other(name, notes)}"
+            )
             continue
         made = _airfoil(name, entry, notes)
         if made is not None:
             found[name] = made
     return found
+
+
+def _other(name: str, notes: Notes) -> str:
+    """Say what a file of an airfoil's name holds that is no shape."""
+    plain = _plain(name)
+    found = [one for one in notes.findings if _plain(Path(one.where).stem) == plain]
+    return f"; {found[0].where} {found[0].message}" if found else ""
 
 
 def thick_airfoils(folder: Path, notes: Notes) -> list[tuple[float, Airfoil]]:

@@ -46,14 +46,22 @@ def recognises(path: Path) -> bool:
     """Tell whether a file is a workbook or a project of NuMAD."""
     if path.suffix.lower() == PROJECT:
         return "<blade>" in head(path).lower()
-    return SHEET in workbook.sheet_names(path)
+    return _sheet(path) is not None
+
+
+def _sheet(path: Path) -> str | None:
+    """Return the title of the sheet, however it is capitalised."""
+    return next(
+        (name for name in workbook.sheet_names(path) if name.lower() == SHEET.lower()), None
+    )
 
 
 def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinition | None:
     """Read a blade; None if there are problems, which `notes` then holds."""
     if path.suffix.lower() == PROJECT:
         return numad_stations.read_project(path, notes)
-    rows = workbook.sheets(path, (SHEET,)).get(SHEET, [])
+    title = _sheet(path) or SHEET
+    rows = workbook.sheets(path, (title,)).get(title, [])
     if numad_stations.is_layout(rows):
         return numad_stations.read_workbook(path, rows, notes, airfoils)
     natural = _switch(rows, 2, ("T", "F"), notes) == "T"

@@ -1,12 +1,12 @@
 """NuMAD 2: blades as stations, in project files ``.nmd`` and in the workbooks they are made from.
 
-A workbook's sheet "Geometry" has, from row 4 on, the columns Sta.#, Blade span (m), Airfoil Shape
-File, TE Type, Twist (deg), Chord, xoffset (of the chord from the leading edge); a station whose
-airfoil is "interp" lies between its neighbours, and what it leaves empty too.  The sheet "bend &
-sweep" may hold span and displacement of both.  A project file has a <station> each, with its own
-points, and tables of <presweep> and <precurve>: span, displacement, slope.  Twist turns the
-leading edge upwind, sweep is toward the trailing edge, curve toward the suction side (NuMAD's
-xls2nmd, readNuMADinput and getApp).  Interpolation here is PCHIP.
+A workbook's sheet "Geometry" has, below its header (row 3), the columns Sta.#, Blade span (m),
+Airfoil Shape File, TE Type, Twist (deg), Chord, xoffset (of the chord from the leading edge); a
+station whose airfoil is "interp" lies between its neighbours, and what it leaves empty too.  The
+sheet "bend & sweep" may hold span and displacement of both.  A project file has a <station> each,
+with its own points, and tables of <presweep> and <precurve>: span, displacement, slope.  Twist
+turns the leading edge upwind, sweep is toward the trailing edge, curve toward the suction side
+(NuMAD's xls2nmd, readNuMADinput and getApp).  Interpolation here is PCHIP.
 """
 
 import math
@@ -31,7 +31,8 @@ from bladegen.readers.text_file import number, read_lines
 __all__ = ["is_layout", "read_project", "read_workbook"]
 
 SHEET, CURVES = "Geometry", "bend & sweep"
-HEADER_ROW, FIRST_ROW = 3, 4
+HEADERS = range(1, 7)  # rows in which the header may stand; NuMAD's is the third
+FIRST_OF_CURVES = 4
 SPAN, SHAPE = 1, 2  # columns of the sheet
 INTERPOLATED = "interp"
 CIRCULAR = "circular"  # NuMAD's own cylinder
@@ -50,8 +51,19 @@ _CURVE = re.compile(r"<(presweep|precurve|genlinex|genliney)>(.*?)</\1>", re.DOT
 
 def is_layout(rows: Rows) -> bool:
     """Tell whether the rows of a sheet Geometry are of this, the older layout."""
-    cells = next((cells for at, cells in rows if at == HEADER_ROW), [])
-    return bool(cells) and str(cells[0]).strip().lower().startswith("sta")
+    return _header(rows) > 0
+
+
+def _header(rows: Rows) -> int:
+    """Return the row whose first cell is Sta.#, 0 if there is none."""
+    return next(
+        (at for at, cells in rows if at in HEADERS and _begins(cells, "sta")),
+        0,
+    )
+
+
+def _begins(cells: Sequence[Cell], word: str) -> bool:
+    return bool(cells) and str(cells[0]).strip().lower().startswith(word)
 
 
 def read_workbook(
@@ -59,8 +71,9 @@ def read_workbook(
 ) -> BladeDefinition | None:
     """Read a workbook of the older layout; None if there are problems, which `notes` then holds."""
     table = []
+    first = _header(rows) + 1
     for at, cells in rows:
-        if at >= FIRST_ROW and len(cells) > SHAPE:
+        if at >= first and len(cells) > SHAPE:
             if cells[SPAN] is None:
                 break
             table.append((at, cells))
@@ -180,7 +193,7 @@ def _bent(path: Path, z: Array, notes: Notes) -> dict[str, Array]:
             curve = [
                 (row[first], row[first + 1])
                 for at, row in rows
-                if at >= FIRST_ROW and len(row) > first + 1
+                if at >= FIRST_OF_CURVES and len(row) > first + 1
             ]
             numbers = [(x, y) for x, y in curve if isinstance(x, float) and isinstance(y, float)]
             methods = [row[first + 2] for _, row in rows[:1] if len(row) > first + 2]

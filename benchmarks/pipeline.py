@@ -13,7 +13,7 @@ import bladegen as bg
 from bladegen.build import build
 
 SPANS = 100
-RUNS, BUILDS = 15, 5
+RUNS, BUILDS = 15, 3
 
 
 def main() -> None:

@@ -33,7 +33,7 @@ from bladegen.landmarks import landmark_parameters
 TOLERANCES = (3.0, 1.0, 0.3, 0.1, 0.05)  # mm
 SECTIONS = (20, 40, 80, 160)
 LOFT_LANDMARKS = 101
-RUNS = 5
+RUNS = 3
 PATIENCE = 30.0  # s
 WARMING = 4.0  # times the patience: libraries are loaded and compiled
 SPANS, PLACES = 40, 12  # of the points that are measured

@@ -8,6 +8,7 @@ and the others beside it, under names that start with the main file's.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from bladegen.arguments import instance, path_of, suggestion
@@ -19,6 +20,7 @@ from bladegen.files import require_suffix
 from bladegen.redefinition import redefined
 from bladegen.writers import airfoil_files, hawc2, openfast, spanwise_table, windio1, windio2
 from bladegen.writers.airfoil_files import write_airfoil
+from bladegen.writers.proof import GRID, WHOLE, proven
 
 __all__ = ["FORMATS", "Format", "format_of", "prepared", "write", "write_airfoil"]
 
@@ -45,6 +47,9 @@ class Format:
         From a definition and a path to what the format cannot hold.
     polars : bool
         Whether it holds polars.
+    tolerance : float, optional
+        How far a blade may be off that is read back [m] without a finding; None for formats that
+        hold no blade.
     """
 
     name: str
@@ -52,17 +57,23 @@ class Format:
     suffixes: tuple[str, ...]
     write: Callable[[BladeDefinition, Path], tuple[Finding, ...]]
     polars: bool = False
+    tolerance: float | None = WHOLE
 
 
 FORMATS = (
     Format("windio2", "windIO 2", (".yaml", ".yml"), windio2.write, polars=True),
     Format("windio1", "windIO 1", (".yaml", ".yml"), windio1.write, polars=True),
-    Format("openfast", "OpenFAST (AeroDyn blade)", (".dat",), openfast.write, polars=True),
-    Format("hawc2", "HAWC2", (".htc",), hawc2.write, polars=True),
+    Format("openfast", "OpenFAST (AeroDyn blade)", (".dat",), openfast.write, True, GRID),
+    Format("hawc2", "HAWC2", (".htc",), hawc2.write, True, GRID),
     Format("csv", "spanwise table (CSV)", (".csv",), spanwise_table.write),
-    Format("xlsx", "spanwise table (IEA workbook)", (".xlsx",), spanwise_table.write),
-    Format("selig", "a folder of airfoil files (Selig)", ("",), airfoil_files.write_selig),
-    Format("lednicer", "a folder of airfoil files (Lednicer)", ("",), airfoil_files.write_lednicer),
+    Format("xlsx", "spanwise table (IEA workbook)", (".xlsx",), spanwise_table.write, False, GRID),
+    *(
+        Format(name, f"a folder of airfoil files ({name.title()})", ("",), write, False, None)
+        for name, write in (
+            ("selig", airfoil_files.write_selig),
+            ("lednicer", airfoil_files.write_lednicer),
+        )
+    ),
 )
 
 
@@ -101,7 +112,7 @@ def write(
     Raises
     ------
     ExportError
-        If there is no such format, or the file cannot be written.
+        If there is no such format, or the file cannot be written or read back.
     BladegenError
         If the polars asked for cannot be had.
     """
@@ -110,7 +121,10 @@ def write(
     definition, said = prepared(
         what, polars=polars if row.polars else "keep", reynolds=reynolds, progress=progress
     )
-    return (said if row.polars else ()) + row.write(definition, path)
+    said = said if row.polars else ()
+    if row.tolerance is None:
+        return said + row.write(definition, path)
+    return said + proven(partial(row.write, definition), path, definition, row.tolerance)
 
 
 def prepared(

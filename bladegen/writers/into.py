@@ -24,6 +24,7 @@ from bladegen.readers.yaml_file import YamlError, load_yaml
 from bladegen.writers import windio1, windio2
 from bladegen.writers.into_hawc2 import write_into_htc
 from bladegen.writers.into_openfast import write_into_main
+from bladegen.writers.proof import GRID, WHOLE, put_in_place, read_back, taken_back
 from bladegen.writers.windio import Document
 
 __all__ = ["write_into"]
@@ -73,12 +74,26 @@ def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[
     ------
     FileError
         If the turbine file cannot be read or holds no blade.
+    ExportError
+        If the file with the blade in it cannot be read, by what was wrong before or else.
     """
     own = turbine.suffix.lower()
     require_suffix(path, YAML if own in YAML else (own,))
     other = OTHERS.get(own)
     if other is not None:
-        return other(definition, turbine, path)
+        with taken_back(path):
+            said = other(definition, turbine, path)
+            partly = any(finding.where == "aero" for finding in said)
+            if partly or path.parent.resolve() != turbine.parent.resolve():
+                return said  # names lead to files that are elsewhere
+            return said + read_back(path, path, definition, GRID)
+    with put_in_place(path) as draft:
+        said = _into_yaml(definition, turbine, draft)
+        return said + read_back(draft, path, definition, WHOLE, turbine)
+
+
+def _into_yaml(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[Finding, ...]:
+    """Write a windIO turbine file with its blade replaced."""
     try:
         plain, _ = load_yaml(turbine)
     except YamlError as error:

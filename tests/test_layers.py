@@ -27,6 +27,7 @@ FLOW = [
     "polars",
     "distribution",
     "definition",
+    "plausibility",
     "conventions",
     "extension",
     "blending",

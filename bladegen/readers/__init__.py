@@ -13,11 +13,13 @@ from pathlib import Path
 from bladegen.arguments import path_of, shown, suggestion
 from bladegen.definition import BladeDefinition
 from bladegen.errors import DefinitionError, FileError, Finding
+from bladegen.plausibility import doubts
 from bladegen.readers import hawc2, numad, openfast, qblade, spanwise_table, turbine_file
 from bladegen.readers.document import Notes
 
 __all__ = ["FORMATS", "SUFFIXES", "Format", "bundled", "holds_blade", "read"]
 
+RADIANS = ("windIO 1",)  # formats whose angles are in radians
 BY_AIRFOILS = Finding(
     "relative thickness", "is not given over span; it is that of the airfoils, PCHIP between them"
 )
@@ -104,9 +106,11 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
         raise FileError(str(source), error.problems) from None
     if definition is None or notes.problems:
         raise FileError(str(source), notes.shown())
+    known = definition.format or row.name
+    findings = (*definition.findings, *doubts(definition, radians=known in RADIANS))
     if definition.relative_thickness is None:
-        definition = replace(definition, findings=(*definition.findings, BY_AIRFOILS))
-    return replace(definition, format=definition.format or row.name)
+        findings += (BY_AIRFOILS,)
+    return replace(definition, format=known, findings=findings)
 
 
 def holds_blade(path: Path) -> bool:

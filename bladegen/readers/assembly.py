@@ -26,8 +26,6 @@ __all__ = ["Library", "Schedule", "assemble", "span_fractions"]
 
 Schedule = list[tuple[float, str, int]]  # span fraction, airfoil, row of the file
 QUARTER = 0.25  # of the chord, from the leading edge
-BENT_DOWNWIND = 0.002  # of the length; a tip bent farther downwind is a finding
-TWISTED_BACK = np.radians(-3.0)  # a root twisted farther is a finding
 
 
 @dataclass(frozen=True)
@@ -86,7 +84,6 @@ def assemble(
     z, chord_curve, twist = curves["z"], curves["chord"], curves["twist"]
     if notes.problems or z is None or chord_curve is None or twist is None:
         return None
-    _remark(values, twist, notes)
     rthick = curves.get("rthick")
     try:
         stations = _stations(schedule, rthick, library, notes)
@@ -164,25 +161,6 @@ def _or_zero(key: str, curves: dict[str, Distribution | None], notes: Notes) -> 
         notes.findings.append(Finding(key, "is not given; taken as 0"))
         return Distribution.constant(0.0)
     return curve
-
-
-def _remark(values: dict[str, Array], twist: Distribution, notes: Notes) -> None:
-    """Say what looks as if the file had other signs."""
-    length = np.nanmax(values["z"]) - np.nanmin(values["z"])
-    bend = values.get("prebend", np.zeros(1))
-    tip = float(bend[~np.isnan(bend)][-1])
-    if tip > BENT_DOWNWIND * length:
-        notes.findings.append(
-            Finding("prebend", f"bends the tip {tip:g} m downwind; upwind is negative here")
-        )
-    if twist.values[0] < TWISTED_BACK:
-        notes.findings.append(
-            Finding(
-                "twist",
-                f"is {np.degrees(twist.values[0]):g} deg at the root; positive turns the leading "
-                "edge upwind here, and roots usually are",
-            )
-        )
 
 
 def _stations(

@@ -76,6 +76,8 @@ class Blade(Shaped):
         What was asked of `perturbed`, once a call.
     mirrored : bool
         Whether this is the mirror image in y, for rotors that turn the other way.
+    fairing : float, optional
+        How far airfoils may have been moved to take noise out [chord], to be told.
     """
 
     definition: BladeDefinition
@@ -94,6 +96,7 @@ class Blade(Shaped):
     thickenings: tuple[Thickening, ...] = ()
     changes: tuple[dict[str, Any], ...] = ()
     mirrored: bool = False
+    fairing: float | None = None
 
     def __post_init__(self) -> None:
         for field in ("u", "eta", "representatives", "M", "b"):
@@ -194,6 +197,7 @@ class Blade(Shaped):
             planes=planes,
             trailing_edge=trailing_edge,
             contours=contours,
+            fairing=fairing,
             findings=findings,
         )
 

@@ -10,17 +10,20 @@ import platform
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from bladegen import __version__, cad, cad_files, checks, combs, exporters, mesh, writers
+from bladegen import __version__, cad, cad_files, checks, combs, exporters, marks, mesh, writers
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, PromiseError
-from bladegen.files import alone, digest_of, folder, replacing, safe_stem
+from bladegen.files import alone, folder, replacing, safe_stem
 from bladegen.grid_quality import grid_figures
+from bladegen.inventory import REPORT, entry_of, others
 from bladegen.net import Deviation
+from bladegen.provenance import Provenance, word
 from bladegen.rotor import Rotor, write_glb, write_step
 from bladegen.spanwise import spanwise, write_csv
 
@@ -30,6 +33,7 @@ logger = logging.getLogger(__name__)
 
 DEFAULT_FORMATS = ("step", "stl", "glb", "png")
 LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk", "h5py")
+SPANWISE = ".spanwise.csv"
 SPANWISE_ROWS = 60  # in the report; the CSV file holds all
 FROM_FILE = ("solids", "faces", "valid", "closed", "area_m2", "bounds_m")
 _MESHES = (".stl", ".glb", ".ply", ".obj", ".3mf")  # what trimesh reads
@@ -120,22 +124,27 @@ def _built(
                 exporters.write(products, path)
             except PromiseError as error:
                 miss, made = miss or error, error.kept or path
-        ledger.note(made)
+        kind = exporters.format_of(path).kind
+        ledger.note(made, products.made_from(kind, exporters.suffix_of(path)))
         with ledger.timed("measuring the files"):
-            _measure(report, products, exporters.format_of(path).kind, made)
+            _measure(report, products, kind, made)
     if rotor is not None:
         report["rotor"] = asdict(rotor) | {"mirrored": blade.mirrored != rotor.mirrored}
         miss = _rotor(rotor, products, target / f"{stem}.rotor", ledger) or miss
     if any(path.suffix == ".png" for path in paths):
-        with ledger.writing(target / f"{stem}.combs.png", "combs") as temporary:
+        by = products.made_from(exporters.Kind.picture, ".png")
+        with ledger.writing(target / f"{stem}.combs.png", "combs", by) as temporary:
             combs.draw(blade, temporary)
     columns = spanwise(blade, blade.stations(options.stations))
-    with ledger.writing(target / f"{stem}.spanwise.csv", "spanwise") as temporary:
+    by = products.made_from(exporters.Kind.table, ".csv")
+    with ledger.writing(target / f"{stem}{SPANWISE}", "spanwise", by) as temporary:
         write_csv(columns, temporary)
     some = slice(None, None, max(1, options.stations // SPANWISE_ROWS))
     report["spanwise"] = {name: values[some].tolist() for name, values in columns.items()}
-    report["files"] = ledger.files
-    report["remarks"] = [str(remark) for remark in products.remarks]
+    written = {entry["name"] for entry in ledger.files}
+    left, notes = others(target, stem, written, partial(_made_here, products))
+    report["files"] = ledger.files + left
+    report["remarks"] = [str(remark) for remark in (*products.remarks, *notes)]
     report["seconds"] = {stage: round(spent, 3) for stage, spent in ledger.seconds.items()}
     with replacing(report_path(target, blade.name)) as temporary:
         temporary.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
@@ -150,14 +159,23 @@ def _rotor(
     """Write a rotor's two files; return what was asked of its solids and is not so."""
     made, miss = stem.with_name(f"{stem.name}.step"), None
     ledger.progress(f"writing {made.name}")
+    told = tuple((f"rotor_{key}", word(value)) for key, value in asdict(rotor).items())
+    solid, triangles = (
+        replace(by, settings=by.settings + told, id="")
+        for by in (
+            products.made_from(exporters.Kind.solid, ".step"),
+            products.made_from(exporters.Kind.triangles, ".glb"),
+        )
+    )
     with ledger.timed("rotor"), replacing(made) as temporary:
         write_step(rotor, products.solid, temporary)
+        marks.put(temporary, solid)
     try:
         exporters.require_size(products, made)
     except PromiseError as error:
         miss, made = error, error.kept or made
-    ledger.note(made)
-    with ledger.writing(stem.with_name(f"{stem.name}.glb"), "rotor") as temporary:
+    ledger.note(made, solid)
+    with ledger.writing(stem.with_name(f"{stem.name}.glb"), "rotor", triangles) as temporary:
         write_glb(rotor, products.mesh, temporary)
     return miss
 
@@ -182,17 +200,28 @@ class _Ledger:
             logger.debug("%s: %.2f s", stage, spent)
 
     @contextmanager
-    def writing(self, path: Path, stage: str) -> Iterator[Path]:
-        """Write a file under a temporary name within, and note it once it is whole."""
+    def writing(self, path: Path, stage: str, made: Provenance) -> Iterator[Path]:
+        """Write a file under a temporary name within, mark it, and note it once it is whole."""
         self.progress(f"writing {path.name}")
         with self.timed(stage), replacing(path) as temporary:
             yield temporary
-        self.note(path)
+            marks.put(temporary, made)
+        self.note(path, made)
 
-    def note(self, path: Path) -> None:
+    def note(self, path: Path, made: Provenance) -> None:
         """Add a file that lies on the disk; a report that does not fit the file beside it shows."""
-        size = path.stat().st_size
-        self.files.append({"name": path.name, "bytes": size, "sha256": digest_of(path)})
+        self.files.append(entry_of(path, made))
+
+
+def _made_here(products: exporters.Products, path: Path) -> Provenance | None:
+    """Return what a file of that name would be made from; None if its format is none of ours."""
+    try:
+        suffix = exporters.suffix_of(path)
+    except ExportError:
+        return None
+    table = path.name.endswith(SPANWISE)
+    kind = exporters.Kind.table if table else exporters.FORMATS[suffix].kind
+    return products.made_from(kind, suffix)
 
 
 def _measure(
@@ -211,7 +240,7 @@ def _measure(
 
 def report_path(target: Path, name: str) -> Path:
     """Return where the report on a blade of that name lies."""
-    return target / f"{safe_stem(name)}.report.json"
+    return target / f"{safe_stem(name)}{REPORT}"
 
 
 def _solid(products: exporters.Products, path: Path, wanted: float) -> dict[str, Any]:

@@ -41,9 +41,11 @@ def check(
     if screenshot is not None:
         raise BladegenError("screenshot: a picture is made of two files; name another one")
     from bladegen import checks
+    from bladegen.inventory import made_by
 
     blade = blade_of(file, airfoils)
     result = checks.check_file(Path(file)) if blade is None else checks.check_blade(blade)
+    made = None if blade is not None else made_by(Path(file))
     if as_json:
         typer.echo(
             json.dumps(
@@ -52,6 +54,7 @@ def check(
                     "kind": result.kind,
                     **result.figures,
                     "problems": list(result.problems),
+                    "made_from": None if made is None else made.text,
                 },
                 indent=2,
             )
@@ -60,6 +63,8 @@ def check(
         figures = {k: v for k, v in result.figures.items() if k != "findings"}
         print_figures(f"{result.source} ({result.kind})", figures)
         print_findings(result.figures.get("findings", []))
+        if made is not None:
+            typer.echo(f"made from: {made.text}")
     if result.problems:
         raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
 
@@ -79,10 +84,13 @@ def _compare(
     """Measure two surfaces against each other and print, or draw, what was found."""
     from bladegen.comparison import compared, draw, surface_of
     from bladegen.files import replacing
+    from bladegen.likeness import alike
 
     with progress_bar() as progress:
         progress("reading")
-        one, two = (surface_of(blade_of(name, airfoils) or Path(name)) for name in (file, other))
+        things = [blade_of(name, airfoils) or Path(name) for name in (file, other)]
+        things, differing = alike(things)
+        one, two = (surface_of(thing) for thing in things)
         progress("measuring distances")
         found, note = compared(one, two)
         if screenshot is not None:
@@ -91,7 +99,7 @@ def _compare(
                 draw(found, f"{file} against {other}", temporary)
     if as_json:
         figures = {"source": file, "other": other, **found.figures, "bands": found.bands()}
-        typer.echo(json.dumps(figures | {"note": note}, indent=2))
+        typer.echo(json.dumps(figures | {"note": note, "made": differing}, indent=2))
         return
     print_figures(f"{file} against {other}", found.figures)
     rows = [
@@ -104,5 +112,7 @@ def _compare(
     print_table(["z, m", "largest, mm", "RMS, mm", "mean (outside +), mm"], rows)
     if note:
         typer.echo(f"note: {note}")
+    for said in differing:
+        typer.echo(f"note: {said}")
     if screenshot is not None:
         typer.echo(f"wrote {screenshot}")

@@ -5,7 +5,9 @@ every group among its parameters, so that each option stands in one place.
 """
 
 import inspect
+import shlex
 from collections.abc import Callable
+from contextvars import ContextVar
 from copy import copy
 from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
@@ -251,6 +253,7 @@ class Producing:
         return Options(
             tolerance=metres(tolerance, "tolerance"),
             largest=LIGHT_BYTES if self.light else None,
+            command=_COMMAND.get(),
             step_schema=self.step,
             stations=self.stations,
             tip=tips[self.tip],
@@ -293,6 +296,7 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def whole(**given: Any) -> None:
+        _COMMAND.set(_typed(command.__name__, parameters, given))
         made = {
             name: group(**{field.name: given.pop(field.name) for field in fields(group)})
             for name, group in groups.items()
@@ -302,6 +306,35 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
     whole.__dict__["__signature__"] = own.replace(parameters=parameters)
     whole.__annotations__ = {one.name: one.annotation for one in parameters}
     return whole
+
+
+_COMMAND: ContextVar[str] = ContextVar("what was typed", default="")
+UNTOLD = ("output", "jobs", "dask", "resume")  # options that change no file
+
+
+def _typed(name: str, parameters: list[inspect.Parameter], given: dict[str, Any]) -> str:
+    """Return a command as files tell it: without folders, defaults and what changes no file."""
+    words = ["bladegen", name]
+    for parameter in parameters:
+        value = given[parameter.name]
+        if value == parameter.default or parameter.name in UNTOLD:
+            continue
+        option = get_args(parameter.annotation)[1]
+        values = value if isinstance(value, list) else [value]
+        if isinstance(option, typer.models.ArgumentInfo):
+            words += [Path(str(one)).name for one in values]
+            continue
+        said = next(
+            (
+                flag
+                for flag in (option.default, *(option.param_decls or ()))
+                if isinstance(flag, str) and flag.startswith("--")
+            ),
+            "--" + parameter.name.replace("_", "-"),
+        )
+        for one in values:
+            words += [said] if one is True else [said, Path(str(one)).name]
+    return shlex.join(words)
 
 
 def _in_panel(annotation: Any, group: Any) -> Any:

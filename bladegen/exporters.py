@@ -7,18 +7,18 @@ at all.
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from enum import StrEnum
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from bladegen import cad, cad_files, grid, grid_files, mesh, preview, writers
+from bladegen import cad, cad_files, grid, grid_files, marks, mesh, preview, writers
 from bladegen.arguments import instance, path_of, suggestion
 from bladegen.blade import Blade
 from bladegen.errors import ExportError, Finding, SizeError, ToleranceError
 from bladegen.files import replacing
-from bladegen.options import UNITS, Options
+from bladegen.options import UNITS, Kind, Options
+from bladegen.provenance import Provenance, made_from
 
 __all__ = [
     "FORMATS",
@@ -31,12 +31,11 @@ __all__ = [
     "export",
     "format_of",
     "require_size",
+    "suffix_of",
     "write",
 ]
 
 logger = logging.getLogger(__name__)
-
-STL_HEADER = 80  # bytes of free text at the start of a binary STL file
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,19 +71,25 @@ class Products:
         self.progress("making the grid")
         return grid.from_blade(self.blade, self.options.spacing, self.options.tip)
 
+    def made_from(self, kind: Kind, suffix: str) -> Provenance:
+        """Return what a file of a kind and suffix is made from."""
+        options = self.options
+        return replace(
+            self._provenance,
+            settings=self._provenance.settings + tuple(options.settings(kind, suffix).items()),
+            id="",
+        )
+
+    @cached_property
+    def _provenance(self) -> Provenance:
+        return made_from(self.blade, {}, self.options.command)
+
+    def mark(self, path: Path, kind: Kind, suffix: str) -> None:
+        """Write what a file is made from into it, where its format has a place for it."""
+        marks.put(path, self.made_from(kind, suffix))
+
 
 Writer = Callable[[Products, Path], None]
-
-
-class Kind(StrEnum):
-    """What a file holds, and so what can be measured on it."""
-
-    solid = "solid"
-    triangles = "triangles"
-    grid = "grid"
-    definition = "definition"
-    table = "table"
-    picture = "picture"
 
 
 @dataclass(frozen=True)
@@ -116,11 +121,8 @@ def _write_brep(products: Products, path: Path) -> None:
 
 
 def _write_stl(products: Products, path: Path) -> None:
-    unit = products.options.unit
-    scaled = mesh.to_trimesh(products.mesh, scale=UNITS[unit])
-    header = f"bladegen {products.blade.name}, unit: {unit}".encode("ascii", "replace")
-    body = scaled.export(file_type="stl")
-    path.write_bytes(header[:STL_HEADER].ljust(STL_HEADER) + body[STL_HEADER:])
+    scaled = mesh.to_trimesh(products.mesh, scale=UNITS[products.options.unit])
+    path.write_bytes(scaled.export(file_type="stl"))
 
 
 def _write_obj(products: Products, path: Path) -> None:
@@ -159,7 +161,8 @@ def _write_fmt(products: Products, path: Path) -> None:
 
 
 def _write_cgns(products: Products, path: Path) -> None:
-    grid_files.write_cgns(products.grid, path)
+    made = products.made_from(Kind.grid, ".cgns")
+    grid_files.write_cgns(products.grid, path, note=made.text)
 
 
 def _write_vtu(products: Products, path: Path) -> None:
@@ -245,9 +248,20 @@ def format_of(path: Path) -> Format:
     ExportError
         If no format has that suffix.
     """
-    for suffix in sorted(FORMATS, key=len, reverse=True):  # .sections.csv before .csv
+    return FORMATS[suffix_of(path)]
+
+
+def suffix_of(path: Path) -> str:
+    """Return the suffix by which a path names its format: .sections.csv before .csv.
+
+    Raises
+    ------
+    ExportError
+        If no format has that suffix.
+    """
+    for suffix in sorted(FORMATS, key=len, reverse=True):
         if path.name.lower().endswith(suffix):
-            return FORMATS[suffix]
+            return suffix
     raise ExportError(
         f"{path}: suffix {path.suffix!r}, allowed are {', '.join(FORMATS)}"
         f"{suggestion(path.suffix, FORMATS)}"
@@ -307,11 +321,16 @@ def write(products: Products, path: Path) -> None:
                 f"{target.name}; more landmarks than {len(products.blade.u)} may help",
                 target,
             )
+    suffix = suffix_of(path)
     if row.kind is Kind.definition:
         row.write(products, target)
+        with replacing(target) as temporary:
+            temporary.write_bytes(target.read_bytes())
+            products.mark(temporary, row.kind, suffix)
     else:
         with replacing(target) as temporary:
             row.write(products, temporary)
+            products.mark(temporary, row.kind, suffix)
     if miss is not None:
         raise miss
     if row.kind is Kind.solid:

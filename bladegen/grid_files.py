@@ -114,8 +114,8 @@ def welded(grid: Grid) -> tuple[Indices, Indices]:
     return first, np.concatenate(cells)
 
 
-def write_cgns(grid: Grid, path: Path) -> None:
-    """Write a grid as CGNS in metres."""
+def write_cgns(grid: Grid, path: Path, *, note: str = "") -> None:
+    """Write a grid as CGNS in metres, with a note as a descriptor of its base."""
     import h5py
 
     memory = BytesIO()  # at a full disk HDF5 cannot close its file
@@ -134,6 +134,8 @@ def write_cgns(grid: Grid, path: Path) -> None:
         _node(base, "DataClass", "DataClass_t", "Dimensional")
         units = np.stack([_text(f"{unit:32}", 32) for unit in UNITS])
         _node(base, "DimensionalUnits", "DimensionalUnits_t", units)
+        if note:
+            _node(base, "bladegen", "Descriptor_t", note)
         for family in _families(grid):
             node = _node(base, _camel(family), "Family_t")
             _node(node, "FamilyBC", "FamilyBC_t", WALL)

@@ -4,9 +4,7 @@ An identity is a flat table of what a run was asked for and of fingerprints of w
 it stands in `family.json` and is compared before a run goes on.
 """
 
-import hashlib
 import json
-from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -17,44 +15,11 @@ from bladegen.blade import Blade
 from bladegen.designs import Design
 from bladegen.families import Family
 from bladegen.pga import ShapeSpace
+from bladegen.provenance import fingerprint
 
 __all__ = ["fingerprint", "identity"]
 
 FEW = 64  # variants of a plan of any length that tell whether libraries draw as they did
-
-
-def fingerprint(value: Any) -> str:
-    """Return the first 16 hex digits of a SHA-256 over a value's numbers and names.
-
-    Dataclasses count by their fields, arrays by their bytes, functions by their names.
-    """
-    digest = hashlib.sha256()
-    _feed(digest, value)
-    return digest.hexdigest()[:16]
-
-
-def _feed(digest: Any, value: Any) -> None:
-    if is_dataclass(value) and not isinstance(value, type):
-        digest.update(type(value).__name__.encode())
-        for entry in fields(value):
-            if entry.name not in ("source", "format", "findings", "description", "about"):
-                digest.update(entry.name.encode())
-                _feed(digest, getattr(value, entry.name))
-    elif isinstance(value, np.ndarray):
-        digest.update(f"{value.dtype.str}{value.shape}".encode())
-        digest.update(np.ascontiguousarray(value).tobytes())
-    elif isinstance(value, dict):
-        for key in sorted(value):
-            digest.update(str(key).encode())
-            _feed(digest, value[key])
-    elif isinstance(value, list | tuple):
-        digest.update(f"[{len(value)}]".encode())
-        for item in value:
-            _feed(digest, item)
-    elif callable(value):
-        digest.update(getattr(value, "__qualname__", type(value).__name__).encode())
-    else:
-        digest.update(repr(value).encode())
 
 
 def identity(family: Family) -> dict[str, Any]:

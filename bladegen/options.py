@@ -1,19 +1,33 @@
 """How a blade's products are made: what each export and build may be asked for."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields
+from enum import StrEnum
 from typing import Any
 
 from bladegen import cad, cad_files, grid, mesh
 from bladegen.arguments import amount, function, instance, one_of, suggestion, whole
 from bladegen.arrays import Array
 from bladegen.errors import ExportError
+from bladegen.provenance import word
 from bladegen.tips import Tip, flat_tip
 
-__all__ = ["UNITS", "Options"]
+__all__ = ["UNITS", "Kind", "Options"]
 
 UNITS = {"m": 1.0, "mm": 1000.0}
+_FIXED_UNITS = {".glb": "m", ".3mf": "mm", ".cgns": "m"}
 TOLERANCES = 1e-6, 0.05  # m; millimetres that are given for metres leave the range
+
+
+class Kind(StrEnum):
+    """What a file holds, and so what can be measured on it."""
+
+    solid = "solid"
+    triangles = "triangles"
+    grid = "grid"
+    definition = "definition"
+    table = "table"
+    picture = "picture"
 
 
 @dataclass(frozen=True)
@@ -37,6 +51,8 @@ class Options:
         STEP: "ap242" or "ap214".
     timestamp : str, optional
         STEP and IGES: the time in the header, ISO 8601, instead of now.
+    command : str
+        What was typed, for files to say; without folders and without what changes no file.
     largest : int, optional
         Solids: the most bytes that a file may take.
     spans : (k,) array, optional
@@ -59,6 +75,7 @@ class Options:
     spacing: grid.Spacing = field(default_factory=grid.Spacing)
     polars: str | None = None
     reynolds: float | None = None
+    command: str = ""
 
     def __post_init__(self) -> None:
         one_of(self.unit, UNITS, "unit", ExportError)
@@ -76,6 +93,29 @@ class Options:
         function(self.tip, "tip", "bladegen.tips.flat_tip or round_tip", ExportError)
         must = "a bladegen.grid.Spacing"
         instance(self.spacing, grid.Spacing, "spacing", must, ExportError)
+
+    def settings(self, kind: Kind, suffix: str) -> dict[str, str]:
+        """Return the options that matter to a file of a kind and suffix, in words."""
+        found: dict[str, str] = {}
+        if kind is Kind.solid:
+            if self.sections is None:
+                found["tolerance_mm"] = word(1e3 * self.tolerance)
+            else:
+                found["solid_sections"] = word(self.sections)
+            if suffix in (".step", ".stp"):
+                found["schema"] = self.step_schema
+        if kind is Kind.grid:
+            found |= {f"grid_{key}": word(value) for key, value in asdict(self.spacing).items()}
+        if kind in (Kind.triangles, Kind.table):
+            found["stations"] = word(self.stations)
+        if kind in (Kind.solid, Kind.triangles, Kind.grid):
+            found["tip"] = word(self.tip)
+        if kind in (Kind.triangles, Kind.grid):
+            found["unit"] = _FIXED_UNITS.get(suffix, self.unit)
+        if kind is Kind.definition:
+            given = {"polars": self.polars, "reynolds": self.reynolds}
+            found |= {key: word(value) for key, value in given.items() if value is not None}
+        return found
 
     @classmethod
     def named(cls, given: Mapping[str, Any]) -> "Options":

@@ -74,7 +74,7 @@ def drawn(number: int, seed: int, space: bg.ShapeSpace) -> tuple[bg.Blade, float
         t = space.sample(1, rng)[0]
         factors = {key: float(rng.uniform(*ends)) for key, ends in RANGES.items()}
         try:
-            variant = base.perturbed(space, t, allow_extrapolation=True, **factors)
+            variant = base.perturbed(space, t, allow_extrapolation=True, allow_odd=True, **factors)
         except PerturbationError:
             continue
         tolerance = TOLERANCES[place % len(TOLERANCES)]

@@ -10,7 +10,7 @@ and a compiled loop (`kernels`) takes it from there.  The result is what `Blade.
 to rounding.  Arrays are (k, b, ...), spans first, until sections come out as (b, k, ...).
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,49 +21,19 @@ from bladegen.blade import Blade
 from bladegen.chord_lines import KEPT, ChordLines, Motions
 from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange, Window, faded
+from bladegen.domain import Domain
 from bladegen.edges import AsGiven, MinimumThickness, TrailingEdge
 from bladegen.pga import ShapeSpace
 from bladegen.planform import placement
+from bladegen.sanity import CHARACTERISTICS, Oddities, characteristics, oddities
+from bladegen.sections import SectionCurves
+from bladegen.variants import CROSSING, FAULTS, SOUND, THIN, TURNED, Batch
 
 __all__ = ["FAULTS", "LOST_THICKNESS", "Batch", "SectionBatch"]
 
 
 LOST_THICKNESS = 0.2  # of the thickness before, which a deformation must leave
 TURNED_EDGE = -1e-6  # chord; an edge that is open the wrong way by more has turned over
-SOUND, CROSSING, THIN, TURNED = range(4)
-FAULTS = ("", "crosses itself", "loses its thickness", "turns its trailing edge over")
-
-
-@dataclass(frozen=True, eq=False)
-class Batch:
-    """Sections of b variants at k spans.
-
-    Parameters
-    ----------
-    sections : (b, k, n, 3) array
-        Points [m], blade frame, trailing edges finished.
-    chord, twist, relative_thickness : (b, k) arrays
-        [m], [rad], of the chord.
-    faults : (b, k) array of int
-        What is wrong with each section, a place in `FAULTS`.
-    measures : (b, k, 7) array, optional
-        `polygons.MEASURES` of the sections [m], in axes along the chord from the leading edge
-        and normal to it.
-    """
-
-    sections: Array
-    chord: Array
-    twist: Array
-    relative_thickness: Array
-    faults: Indices
-    measures: Array | None = None
-
-    def take(self, rows: Indices, other: "Batch") -> None:
-        """Put the variants of another batch in the place of some."""
-        for entry in fields(self):
-            values = getattr(self, entry.name)
-            if values is not None:
-                values[rows] = getattr(other, entry.name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,8 +124,23 @@ class SectionBatch:
     @cached_property
     def before(self) -> Array:
         """The relative thickness of the baseline's shapes before they are brought to it, (k,)."""
+        return self._curves_before.relative_thickness
+
+    @cached_property
+    def _curves_before(self) -> SectionCurves:
         plain, _, M, b = self._shapes
-        return self.blade.splines.fit(affine.restore(plain, M, b)).relative_thickness
+        return self.blade.splines.fit(affine.restore(plain, M, b))
+
+    @property
+    def _plain_ruling(self) -> Array:
+        """The relative thickness of the blade's sections before anything was perturbed, (k,)."""
+        ruling = self.blade.definition.relative_thickness
+        return self.before if ruling is None else ruling(self.eta)
+
+    @cached_property
+    def _looks_before(self) -> Array:
+        """The looks of the blade's sections before anything was perturbed, (k, 6)."""
+        return characteristics(self._curves_before, self._plain_ruling / self.before)
 
     @cached_property
     def _lines(self) -> tuple[ChordLines, Motions]:
@@ -227,13 +212,16 @@ class SectionBatch:
         to_space, chord, twist = self._placement(change, len(t))
         sections: Array = np.empty((*shape, len(self.blade.u), 3), dtype=dtype)
         measures = np.empty((*shape, len(polygons.MEASURES)) if measured else (0, 0, 0))
+        looks = np.empty((*shape, len(CHARACTERISTICS)))
         width = self._edge_width(target.T, chord)
         if width is not None:
-            faults = self._made(raw, target, chord, width, to_space, sections, measures)
+            faults = self._made(raw, target, chord, width, to_space, sections, measures, looks)
         else:
             plain = np.broadcast_to(np.eye(3), to_space.shape)
             profiles = np.empty(sections.shape)
-            faults = self._made(raw, target, chord, np.zeros(shape), plain, profiles, measures[:0])
+            faults = self._made(
+                raw, target, chord, np.zeros(shape), plain, profiles, measures[:0], looks
+            )
             for i in range(len(t)):
                 profiles[i, ..., :2] = self.blade.trailing_edge(profiles[i, ..., :2], chord[i])
                 np.matmul(profiles[i], to_space[i], out=sections[i], casting="same_kind")
@@ -241,7 +229,13 @@ class SectionBatch:
                     scale = chord[i, :, None, None]
                     measures[i] = polygons.measure(profiles[i, ..., :2] * scale)
         return Batch(
-            sections, chord, twist, target.T.copy(), faults.T, measures if measured else None
+            sections,
+            chord,
+            twist,
+            target.T.copy(),
+            faults.T,
+            looks,
+            measures if measured else None,
         )
 
     def faults(self, t: Array, change: AffineChange) -> tuple[Indices, Array]:
@@ -249,10 +243,30 @@ class SectionBatch:
 
         Both (b, k), as `evaluate` gives them, without the sections.
         """
+        return self.tested(t, change)[:2]
+
+    def tested(self, t: Array, change: AffineChange) -> tuple[Indices, Array, Array]:
+        """Return faults and relative thickness of variants, (b, k), and their looks (b, k, 6)."""
         raw, target = self.coefficients(t), self._target(change, len(t))
         chord, to_space, measures = np.empty((0, 0)), np.empty((0, 0, 0, 0)), np.empty((0, 0, 0))
-        faults = self._made(raw, target, chord, chord, to_space, to_space, measures)
-        return faults.T, target.T
+        looks = np.empty((len(t), len(self.eta), len(CHARACTERISTICS)))
+        faults = self._made(raw, target, chord, chord, to_space, to_space, measures, looks)
+        return faults.T, target.T, looks
+
+    def oddities(self, looks: Array) -> Oddities:
+        """Return what is odd about sections with looks (b, k, 6)."""
+        return oddities(looks, self._looks_before, self._plain_ruling)
+
+    @cached_property
+    def domain(self) -> Domain | None:
+        """Where the space's data allow the sections to go; None without a space."""
+        if self.space is None:
+            return None
+        return Domain.of(self.space, self.eta, self._shapes[1], self._ruling)
+
+    def step(self, t: Array) -> Array:
+        """Return by how much coordinates t (b, r) change those of the sections, (b, k, r)."""
+        return t[:, None] * self._weight[:, None]
 
     def _target(self, change: AffineChange, count: int) -> Array:
         """Return the relative thickness to reach, (k, b)."""
@@ -269,14 +283,16 @@ class SectionBatch:
         to_space: Array,
         sections: Array,
         measures: Array,
+        looks: Array,
     ) -> Indices:
-        """Fill sections and measures that have a length; return what is wrong, (k, b)."""
+        """Fill looks, sections and measures that have a length; return what is wrong, (k, b)."""
         from bladegen import kernels
 
         own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
         standing = self._standing(target) if sections.size else target[..., None]
         given = [self.blade.u, self.features, self._slopes, raw, target, standing, own, known]
-        given += [chord, to_space, sections, measures, edge]
+        flat = self._plain_ruling[:, None] / target
+        given += [chord, to_space, sections, measures, edge, flat, looks]
         # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise
         kernels.made(
             *(np.require(values, requirements=["C", "W"]) for values in given),

@@ -60,10 +60,17 @@ def family(
         typer.Option(help="Keep chord line and nose of the baseline, or leave them to the paper."),
     ] = ChordLine.kept,
     spans: Annotated[int, typer.Option(help="Sections a variant.")] = 100,
+    allow_extrapolation: Annotated[
+        bool, typer.Option("--allow-extrapolation", help="Take sections beyond the space's data.")
+    ] = False,
+    allow_odd: Annotated[
+        bool,
+        typer.Option("--allow-odd", help="Take sections with noses, tails or waves of no airfoil."),
+    ] = False,
     invalid: Annotated[
         str, typer.Option(help="'redraw' variants that are not sound, or 'keep' and mark them.")
     ] = "redraw",
-    tries: Annotated[int, typer.Option(help="Draws of one variant at most.")] = 100,
+    tries: Annotated[int, typer.Option(help="Draws of one variant at most.")] = 1000,
     double: Annotated[
         bool, typer.Option("--double", help="Store sections as float64, not float32.")
     ] = False,
@@ -100,6 +107,8 @@ def family(
         reach=reach,
         window=None if window is None else span_window(window),
         chord_line=chord_line,
+        allow_extrapolation=allow_extrapolation,
+        allow_odd=allow_odd,
         spans=spans,
         invalid=invalid,
         tries=tries,

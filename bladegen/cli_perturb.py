@@ -58,6 +58,10 @@ class Changes:
     allow_extrapolation: Annotated[
         bool, typer.Option("--allow-extrapolation", help="Go beyond the space's data.")
     ] = False
+    allow_odd: Annotated[
+        bool,
+        typer.Option("--allow-odd", help="Take sections with noses, tails or waves of no airfoil."),
+    ] = False
     name: Annotated[str | None, typer.Option(help="Of the perturbed blade and its files.")] = None
 
     @property
@@ -87,6 +91,7 @@ class Changes:
             window=None if self.window is None else span_window(self.window),
             chord_line=self.chord_line,
             allow_extrapolation=self.allow_extrapolation,
+            allow_odd=self.allow_odd,
             name=self.name or f"{blade.name}-perturbed",
         )
 

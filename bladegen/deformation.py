@@ -17,6 +17,7 @@ from bladegen.arguments import amount, numbers, shown
 from bladegen.arrays import Array, ArrayLike, readonly
 from bladegen.chord_lines import KEPT, known_convention
 from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis, Station, united
+from bladegen.domain import BEYOND
 from bladegen.errors import PerturbationError
 from bladegen.pga import ShapeSpace
 
@@ -34,7 +35,6 @@ __all__ = [
 
 ROUND = 0.02  # of the chord; an airfoil nearer to its circle than this is round
 RAMP = 33  # span fractions that resolve a window's rise
-EXTRAPOLATION = "allow_extrapolation=True (--allow-extrapolation) goes beyond the space's data"
 Amount = float | Array
 RANGES = {
     "thickness": (0.2, 5.0),
@@ -173,8 +173,11 @@ class Deformation:
 
     def __call__(self, X: Array, eta: Array) -> Array:
         """Return deformed shapes (k, n, 2) of shapes X at span fractions (k,), bases joined."""
-        t = self.t(eta) * self.window(eta)[:, None]
-        return grassmann.exp(X, self.space.carried(t, X))
+        return grassmann.exp(X, self.space.carried(self.step(eta), X))
+
+    def step(self, eta: Array) -> Array:
+        """Return by how much coordinates change at span fractions (k,), (k, r)."""
+        return self.t(eta) * self.window(eta)[:, None]
 
 
 def deformation_of(
@@ -204,7 +207,7 @@ def deformation_of(
         )
     beyond = space.outside(t.values)
     if beyond and not allow_extrapolation:
-        raise PerturbationError(f"{beyond}; {EXTRAPOLATION}")
+        raise PerturbationError(f"{beyond}; {BEYOND}")
     return Deformation(space.at(u), t, window, known_convention(chord_line))
 
 

@@ -2,7 +2,7 @@
 
 `family` plans variants and gives them one after the other as blades; `Family.block` makes the
 sections of many at once (`batch`), for files and for learning.  A variant whose sections cross
-themselves, lose their thickness, or whose coordinates leave the data, is drawn again up to a
+themselves, lose their thickness, leave the data or are odd (`sanity`) is drawn again up to a
 limit, or kept and marked.
 """
 
@@ -28,7 +28,7 @@ from bladegen.pga import ShapeSpace
 __all__ = ["BLOCK", "POLICIES", "Block", "Family", "family"]
 
 BLOCK = 64  # variants made at once; what a run may lose
-TRIES = 100  # draws of one variant before it is kept and marked
+TRIES = 1000  # draws of one variant before it is kept and marked
 THINNEST = 0.05  # of the chord; a thinner section is no blade's
 SPANS = 100
 POLICIES = ("redraw", "keep")
@@ -91,6 +91,8 @@ class Family:
         Least relative thickness of a sound section.
     chord_line : str
         What a change of shape does with the chord line, as for `Blade.perturbed`.
+    allow_extrapolation, allow_odd : bool
+        Whether sections may leave the space's data, and be odd.
     """
 
     blade: Blade
@@ -102,6 +104,8 @@ class Family:
     tries: int = TRIES
     thinnest: float = THINNEST
     chord_line: str = KEPT
+    allow_extrapolation: bool = False
+    allow_odd: bool = False
 
     def __post_init__(self) -> None:
         must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
@@ -152,13 +156,22 @@ class Family:
         """
         made: dict[str, Any] = {"dtype": dtype, "measured": measured}
         values = self.design.at(index)
+        if np.count_nonzero(self._left(values)) > len(index) // 2 and self._redraws:
+            refused = self._tested(values)  # sections of so many would be made in vain
+            values, attempts, reasons = self._redrawn(index, values, refused)
+            batch = self._sections.evaluate(*self._split(values), **made)
+            return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
         batch = self._sections.evaluate(*self._split(values), **made)
-        refused = self._reasons(values, batch.faults, batch.relative_thickness)
+        refused = self._reasons(values, batch.faults, batch.relative_thickness, batch.looks)
         values, attempts, reasons = self._redrawn(index, values, refused)
         again = np.flatnonzero(attempts > 1)
         if again.size:
             batch.take(again, self._sections.evaluate(*self._split(values[again]), **made))
         return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
+
+    @property
+    def _redraws(self) -> bool:
+        return self.invalid == "redraw" and self.design.redraws
 
     def named(self, block: Block, place: int) -> Blade:
         """Return one variant of a block as a blade."""
@@ -204,7 +217,7 @@ class Family:
         """Draw again what is not sound; return values, numbers of draws and what is left."""
         values, reasons = values.copy(), list(reasons)
         attempts = np.ones(len(index), dtype=np.int64)
-        if self.invalid == "keep" or not self.design.redraws:
+        if not self._redraws:
             return values, attempts, reasons
         again = np.flatnonzero([bool(reason) for reason in reasons])
         for attempt in range(1, self.tries):
@@ -219,11 +232,34 @@ class Family:
 
     def _tested(self, values: Array) -> list[str]:
         """Say what is wrong with variants (b, d), without making their sections."""
-        return self._reasons(values, *self._sections.faults(*self._split(values)))
+        reasons = self._strayed(values)
+        near = np.flatnonzero([not reason for reason in reasons])
+        if near.size:
+            tested = self._sections.tested(*self._split(values[near]))
+            for row, reason in zip(near, self._reasons(values[near], *tested), strict=True):
+                reasons[row] = reason
+        return reasons
 
-    def _reasons(self, values: Array, faults: Indices, thickness: Array) -> list[str]:
-        """Say what is wrong with variants (b, d), first thing first; "" if nothing is."""
+    def _left(self, values: Array) -> Mask:
+        """Tell which variants (b, d) have a section that leaves the space's data, (b,)."""
+        domain, t = self._sections.domain, self._split(values)[0]
+        if domain is None or self.allow_extrapolation:
+            return np.zeros(len(values), dtype=bool)
+        left: Mask = np.any(domain.left(self._sections.step(t)), axis=1)
+        return left
+
+    def _strayed(self, values: Array) -> list[str]:
+        """Say which variants (b, d) leave their bounds or the space's data; "" if none does."""
         reasons = self.design.what.outside(values)
+        domain, t = self._sections.domain, self._split(values)[0]
+        if domain is not None:
+            for row in np.flatnonzero(self._left(values)):
+                reasons[row] = reasons[row] or domain.said(self._sections.step(t[row : row + 1])[0])
+        return reasons
+
+    def _reasons(self, values: Array, faults: Indices, thickness: Array, looks: Array) -> list[str]:
+        """Say what is wrong with variants (b, d), first thing first; "" if nothing is."""
+        reasons = self._strayed(values)
         for row in np.flatnonzero(faults.any(axis=1)):
             k = int(np.argmax(faults[row] > 0))
             reasons[row] = reasons[row] or f"{FAULTS[faults[row, k]]} at eta = {self.eta[k]:.4f}"
@@ -233,6 +269,13 @@ class Family:
                 f"relative thickness {thickness[row, k]:.4f} at eta = {self.eta[k]:.4f} is below "
                 f"{self.thinnest:g}"
             )
+        if self.allow_odd:
+            return reasons
+        odd = self._sections.oddities(looks)
+        for place in np.flatnonzero(odd.kinds.any(axis=1)).tolist():
+            k = int(np.argmax(odd.kinds[place] > 0))
+            said = f"{odd.said((place, k))} at eta = {self.eta[k]:.4f}"
+            reasons[place] = reasons[place] or said
         return reasons
 
 
@@ -250,6 +293,8 @@ def family(
     invalid: str = "redraw",
     tries: int = TRIES,
     chord_line: str = KEPT,
+    allow_extrapolation: bool = False,
+    allow_odd: bool = False,
 ) -> Family:
     """Plan a family of perturbed blades; iterate over it for the blades.
 
@@ -278,6 +323,8 @@ def family(
         "redraw" variants that are not sound, up to `tries` draws, or "keep" them, marked.
     chord_line : str
         "kept" where the baseline has it, or as in the "paper": see `Blade.perturbed`.
+    allow_extrapolation, allow_odd : bool
+        Take variants whose sections leave the space's data, or are odd: see `Blade.perturbed`.
 
     Raises
     ------
@@ -310,4 +357,6 @@ def family(
         invalid,
         tries,
         chord_line=chord_line,
+        allow_extrapolation=allow_extrapolation,
+        allow_odd=allow_odd,
     )

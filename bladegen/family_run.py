@@ -248,7 +248,7 @@ def _faults(order: Order, block: Block) -> dict[int, str]:
     found = {}
     for place in block.index[block.valid].tolist() if order.suffixes else ():
         try:
-            order.family.named(block, place).require_sound()
+            order.family.named(block, place).require_sound(allow_odd=order.family.allow_odd)
         except PerturbationError as error:
             found[place] = str(error)
     return found

@@ -43,6 +43,8 @@ def identity(family: Family) -> dict[str, Any]:
         "design_fingerprint": fingerprint(_first(design)),
         "window": [family.window.start, family.window.end],
         "chord_line": family.chord_line,
+        "allow_extrapolation": family.allow_extrapolation,
+        "allow_odd": family.allow_odd,
         "spans": len(family.eta),
         "invalid": family.invalid,
         "tries": family.tries,

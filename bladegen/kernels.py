@@ -16,6 +16,7 @@ from math import cos, inf, sin, sqrt
 import numpy as np
 
 from bladegen.arrays import Array, Indices
+from bladegen.characteristics import characterise
 from bladegen.compiled import compiled
 from bladegen.edges import WINDOW
 from bladegen.plane_maps import Numbers, carried, carry, combine, motion_of, onto
@@ -24,7 +25,7 @@ from bladegen.sizes import Section, chord_line, sizing
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 4  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 6  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -44,6 +45,8 @@ def made(
     sections: Array,
     measures: Array,
     edge: Array,
+    flat: Array,
+    looks: Array,
     kept: bool,
 ) -> None:
     """Test sections, bring them to unit chord and relative thickness, finish and place them.
@@ -75,6 +78,10 @@ def made(
         Filled: `polygons.MEASURES` [m].
     edge : (b, k) array, or of no length without sections
         Least thickness of the trailing edges over the chord.
+    flat : (k, b) array
+        Factors across the chord under which characteristics are taken.
+    looks : (b, k, 6) array, or of no length
+        Filled: `sanity.CHARACTERISTICS`.
     kept : bool
         Whether `standing` holds chord lines; else motions.
     """
@@ -88,15 +95,16 @@ def made(
             known[k, b] = SOUND if laddered(points) else compared(points, moved)
             section = Section(u, slopes[k], c, points)
             total, own[k, b] = sizing(section, values[k], target[k, b], now, moved, work)
+            if not len(sections) and not len(looks):
+                continue
+            carry(points, total)
+            carried(c, total, now)
+            line = chord_line(Section(u, slopes[k], now, points), work)
+            if len(looks):
+                characterise(points, line, flat[k, b], moved, work, looks[b, k])
             if len(sections):
-                carry(points, total)
-                carried(c, total, now)
                 there = standing[k, b]
-                if kept:
-                    line = chord_line(Section(u, slopes[k], now, points), work)
-                    carry(points, onto(line, there))
-                else:
-                    carry(points, motion_of(there))
+                carry(points, onto(line, there) if kept else motion_of(there))
                 finish(points, edge[b, k])
                 place(points, to_space[b, k], sections[b, k])
             if len(measures):

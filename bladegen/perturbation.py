@@ -23,8 +23,10 @@ from bladegen.deformation import (
     Window,
     deformation_of,
 )
-from bladegen.errors import PerturbationError
+from bladegen.domain import BEYOND, Domain
+from bladegen.errors import Finding, PerturbationError
 from bladegen.pga import ShapeSpace
+from bladegen.sanity import ODD, Oddities, characteristics, oddities
 from bladegen.sections import SectionSplines
 
 __all__ = ["Perturbable"]
@@ -46,6 +48,7 @@ class Perturbable:
         deformations: tuple[Deformation, ...]
         thickenings: tuple[Thickening, ...]
         changes: tuple[dict[str, Any], ...]
+        findings: tuple[Finding, ...]
 
         @property
         def splines(self) -> SectionSplines: ...
@@ -53,6 +56,10 @@ class Perturbable:
         def _with(self, **changes: Any) -> Self: ...
 
         def shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]: ...
+
+        def _ruling(self, eta: Array) -> Array | None: ...
+
+        def _target(self, eta: Array, points: Array) -> Array | None: ...
 
     def perturbed(
         self,
@@ -69,6 +76,7 @@ class Perturbable:
         window: Window | None = None,
         chord_line: str = KEPT,
         allow_extrapolation: bool = False,
+        allow_odd: bool = False,
         name: str | None = None,
     ) -> Self:
         """Return a perturbed blade; this one stays as it is.
@@ -89,7 +97,9 @@ class Perturbable:
             until chord line and nose are those it had, so that twist stays twist; "paper": it
             stays where the paper's formula leaves it, turned by up to some degrees.
         allow_extrapolation : bool
-            Take coordinates beyond the range of the space's data.
+            Let sections leave the range of the space's data; a finding says where they do.
+        allow_odd : bool
+            Take sections that no aerodynamicist would (`sanity`); findings say which.
         name : str, optional
             The perturbed blade's name; this one's by default.
 
@@ -97,7 +107,7 @@ class Perturbable:
         ------
         PerturbationError
             If space and t are not given together, a value is of another kind or out of range, or
-            a section crosses itself or loses its thickness.
+            a section leaves the data, crosses itself, loses its thickness or is odd.
         """
         amounts = {
             "thickness": thickness,
@@ -115,10 +125,27 @@ class Perturbable:
             ),
             window=window,
             chord_line=chord_line,
-            allow_extrapolation=allow_extrapolation,
+            allow_extrapolation=True,
             name=name,
         )
-        return variant.require_sound()
+        if len(variant.deformations) > len(self.deformations):
+            said = self._leaving(variant.deformations[-1])
+            if said and not allow_extrapolation:
+                coarse = variant.deformations[-1].space.outside(variant.deformations[-1].t.values)
+                raise PerturbationError(f"{coarse or f't: {said}'}; {BEYOND}")
+            if said:
+                finding = Finding("beyond the space's data", said)
+                variant = variant._with(findings=(*variant.findings, finding))
+        return variant.require_sound(allow_odd=allow_odd)
+
+    def _leaving(self, deformation: Deformation) -> str:
+        """Say which of this blade's sections leaves the space's data first; "" if none does."""
+        eta = np.union1d(np.linspace(0.0, 1.0, SOUND_SPANS), self.eta)
+        plain, X, M, b = self.shapes(eta)
+        thickness = self._target(eta, affine.restore(plain, M, b))
+        if thickness is None:
+            thickness = self.splines.fit(affine.restore(plain, M, b)).relative_thickness
+        return Domain.of(deformation.space, eta, X, thickness).said(deformation.step(eta))
 
     def untested(
         self,
@@ -165,8 +192,8 @@ class Perturbable:
             changes=(*self.changes, asked | {"window": [window.start, window.end]}),
         )
 
-    def require_sound(self) -> Self:
-        """Return the blade, or raise if a section crosses itself or has lost its thickness.
+    def require_sound(self, *, allow_odd: bool = False) -> Self:
+        """Return the blade, or raise if a section crosses itself, has lost its thickness or is odd.
 
         Tested are the stations and `SOUND_SPANS` others, and many more between these where
         sections are about to fold: a nose may curl up on a thousandth of the span.
@@ -174,42 +201,65 @@ class Perturbable:
         Raises
         ------
         PerturbationError
-            If a section does.
+            If a section does; where odd ones are allowed, findings say which they are.
         """
         eta = np.union1d(np.linspace(0.0, 1.0, SOUND_SPANS), self.eta)
-        folding = np.flatnonzero(self._tested(eta) < FOLDING)
+        shares, odd = self._tested(eta)
+        folding = np.flatnonzero(shares < FOLDING)
         cells = np.union1d(folding[folding > 0] - 1, folding[folding < len(eta) - 1])
         if cells.size:
             between = np.linspace(eta[cells], eta[cells + 1], FINER, endpoint=False)[1:]
             self._tested(np.sort(between.reshape(-1)))
-        return self
+        if odd is None or not odd.kinds.any():
+            return self
+        if not allow_odd:
+            k = int(np.argmax(odd.kinds > 0))
+            raise PerturbationError(f"{self._accused(eta[k])} {odd.said((k,))}; {ODD}")
+        return self._with(findings=self.findings + odd.findings(eta))
 
-    def _tested(self, eta: Array) -> Array:
+    def _accused(self, eta: float) -> str:
+        """Return which section is wrong, as the start of a sentence."""
+        near = self.definition.stations[int(np.argmin(np.abs(self.eta - eta)))]
+        return (
+            f"{self.definition.name}: the section at eta = {eta:.4f} (near {near.airfoil.name} at "
+            f"{near.eta:.4f})"
+        )
+
+    def _tested(self, eta: Array) -> tuple[Array, Oddities | None]:
         """Raise if a section at spans (k,) is unsound; return how far they are from folding, (k,).
 
         That is the least share of its direction that a step along the contour or across the
         section keeps of what it was: 1 unchanged, 0 turned by a right angle or shrunk to nothing.
+        Returned besides is what is odd about them, where their shape is another.
         """
         plain, X, M, b = self.shapes(eta)
         points, given = affine.restore(X, M, b), affine.restore(plain, M, b)
         crossing = crossing_sections(points)
-        own = self.splines.fit(points).relative_thickness
-        before = self.splines.fit(given).relative_thickness
+        curves, curves_before = self.splines.fit(points), self.splines.fit(given)
+        own, before = curves.relative_thickness, curves_before.relative_thickness
         thin = np.flatnonzero(~(own > LOST_THICKNESS * before))
         for places, fault in ((crossing, "crosses itself"), (thin, "loses its thickness")):
             if len(places):
-                place = float(eta[places[0]])
-                near = self.definition.stations[int(np.argmin(np.abs(self.eta - place)))]
                 asked = self.changes[-1] if self.changes else {}
                 said = ", ".join(f"{k} = {v}" for k, v in asked.items() if k != "window")
                 raise PerturbationError(
-                    f"{self.definition.name}: the section at eta = {place:.4f} (near "
-                    f"{near.airfoil.name} at {near.eta:.4f}) {fault}{said and ' with ' + said}"
+                    f"{self._accused(float(eta[places[0]]))} {fault}{said and ' with ' + said}"
                 )
-        return np.minimum(
+        shares = np.minimum(
             _kept(np.diff(points, axis=1), np.diff(given, axis=1)),
             _kept(_across(points), _across(given)),
         )
+        if not self.deformations:
+            return shares, None
+        ruling = self._ruling(eta)
+        ruling = before if ruling is None else ruling  # all are held against each other at that
+        wanted = ruling.copy()
+        for thickening in self.thickenings:
+            wanted *= thickening(eta)
+        sized = curves.mapped(*curves.normalising(wanted))
+        looks = characteristics(sized, ruling / wanted)
+        looks_before = characteristics(curves_before, ruling / before)
+        return shares, oddities(looks, looks_before, ruling)
 
 
 def _together(space: Any, t: Any) -> tuple[ShapeSpace | None, Coordinates]:

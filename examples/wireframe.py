@@ -11,7 +11,7 @@ import numpy as np
 import bladegen as bg
 from bladegen import plots
 
-T = [0.12, 0.08, -0.06, 0.05]  # rad along the four modes
+T = [0.06, -0.05, 0.03, 0.02]  # rad along the four modes
 
 
 def oblique(points: np.ndarray) -> np.ndarray:

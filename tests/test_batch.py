@@ -195,3 +195,25 @@ def test_edges_thicker_than_a_section_are_refused():
     blade = batch_of("dtu10mw").blade.with_trailing_edge(MinimumThickness(2.0))
     with pytest.raises(GeometryError, match="trailing edge: got 2000mm, more than the thickness"):
         SectionBatch(blade, space(), Window(), SPANS).evaluate(drawn(6, 2, 0.3), AffineChange())
+
+
+@pytest.mark.parametrize("name", BLADES)
+def test_looks_and_domain_are_those_of_perturbed_blades(name):
+    made, t = batch_of(name), drawn(11, 4, 0.8)
+    change = AffineChange(thickness=np.linspace(0.9, 1.1, 4))
+    odd = made.oddities(made.evaluate(t, change).looks)
+    again = made.oddities(made.tested(t, change)[2])
+    assert_array_equal(odd.figures, again.figures)
+    for i in range(4):
+        one = AffineChange(thickness=float(change.thickness[i]))
+        variant = made.blade.untested(space(), t[i], one, allow_extrapolation=True)
+        if not made.tested(t, change)[0][i].any():
+            single = variant._tested(SPANS)[1]
+            assert_allclose(
+                odd.figures[i, :, [0, 1, 2, 5, 6]], single.figures.T[[0, 1, 2, 5, 6]], atol=1e-6
+            )
+            assert_array_equal(odd.kinds[i], single.kinds)
+        left = made.domain.left(made.step(t[i : i + 1]))[0]
+        deformation = variant.deformations[-1]
+        assert bool(left.any()) == bool(made.domain.said(deformation.step(SPANS)))
+    assert not made.oddities(made._looks_before).kinds.any()

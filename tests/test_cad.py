@@ -118,7 +118,13 @@ def test_occt_finds_the_exact_volume_of_a_twisted_variant():
     base = bg.Blade.from_definition(read("iea15mw"), path="spline")
     t = [-0.0924, -0.0263, 0.018, -0.041]
     variant = base.perturbed(
-        bg.ShapeSpace.bundled(), t, thickness=0.91, camber=0.955, twist=0.0566, twist_scale=0.743
+        bg.ShapeSpace.bundled(),
+        t,
+        thickness=0.91,
+        camber=0.955,
+        twist=0.0566,
+        twist_scale=0.743,
+        allow_odd=True,
     )
     made = cad.solid(variant, tolerance=1e-3)
     assert_allclose(cad.volume(made.shape) / 1e9, made.volume, rtol=1e-5)

@@ -39,7 +39,7 @@ def test_variants_depend_on_seed_and_place_alone():
 
 
 def test_variants_that_are_not_sound_are_drawn_again_or_kept_and_marked():
-    asked = {"count": 24, "seed": 1, "spans": 60}
+    asked = {"count": 24, "seed": 1, "spans": 60, "allow_extrapolation": True, "allow_odd": True}
     kept = bg.family(blade(), SPACE, **asked, invalid="keep").block(np.arange(24))
     redrawn = bg.family(blade(), SPACE, **asked).block(np.arange(24))
     assert 0 < kept.valid.sum() < 24
@@ -50,6 +50,19 @@ def test_variants_that_are_not_sound_are_drawn_again_or_kept_and_marked():
     assert_array_equal(kept.values[same], redrawn.values[same])
     assert_allclose(kept.batch.sections[same], redrawn.batch.sections[same], rtol=0, atol=1e-9)
     assert any("crosses itself at eta" in reason for reason in kept.reasons)
+
+
+@pytest.mark.parametrize("name", ["iea15mw", "dtu10mw"])
+def test_variants_of_a_default_family_are_what_perturbed_takes(name):
+    family = bg.family(blade(name), SPACE, count=8, seed=3, spans=40)
+    block = family.block(np.arange(8))
+    assert block.valid.all()
+    assert any("arrives at" in reason for reason in block.refused)
+    for t in block.values[:2]:
+        assert blade(name).perturbed(SPACE, t).findings == blade(name).findings
+    odd = bg.family(blade(name), SPACE, count=8, seed=3, spans=40, allow_extrapolation=True)
+    kinds = {reason.split(":")[0] for reason in odd.block(np.arange(8)).refused}
+    assert kinds & {"has a concave nose", "has a drooped tail", "has a pinched nose"}
 
 
 def test_tries_are_limited():

@@ -14,7 +14,7 @@ from numba.core.caching import CacheImpl
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen import compiled, kernels, plane_maps, polygons, sizes
+from bladegen import characteristics, compiled, kernels, plane_maps, polygons, sizes
 from bladegen.batch import SectionBatch
 from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange, Window
@@ -42,13 +42,14 @@ def loaded(module, **names):
 @cache
 def plain():
     """The kernels as plain Python."""
-    names = ("compiled", "plane_maps", "sizes")
+    names = ("compiled", "plane_maps", "characteristics", "sizes")
     known = {f"bladegen.{name}": sys.modules[f"bladegen.{name}"] for name in names}
     numba.config.DISABLE_JIT = True
     try:
         decorator = loaded(compiled)
         maps = loaded(plane_maps, **{"bladegen.compiled": decorator})
-        inner = loaded(sizes, **{"bladegen.plane_maps": maps})
+        loaded_looks = loaded(characteristics, **{"bladegen.plane_maps": maps})
+        inner = loaded(sizes, **{"bladegen.characteristics": loaded_looks})
         return loaded(kernels, **{"bladegen.sizes": inner})
     finally:
         numba.config.DISABLE_JIT = False
@@ -65,7 +66,8 @@ def made(by, values, raw, target, *, edge=0.002, dtype=np.float64):
     to_space = np.broadcast_to(np.eye(3), (b, k, 3, 3)).copy()
     still = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (k, b, 4)).copy()
     given = U, values, slopes, raw, target, still, own, known, chord, to_space, sections, measures
-    by.made(*given, edge / chord, False)
+    looks = np.empty((b, k, 6))
+    by.made(*given, edge / chord, np.ones((k, b)), looks, False)
     return own, known, sections, measures
 
 

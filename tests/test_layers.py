@@ -45,7 +45,12 @@ FLOW = [
     "remarks",
     "thickness",
     "saved_spaces",
+    "compiled",
+    "plane_maps",
+    "characteristics",
+    "sanity",
     "pga",
+    "domain",
     "deformation",
     "perturbation",
     "shaping",
@@ -56,11 +61,10 @@ FLOW = [
     "estimates",
     "writers",
     "polygons",
-    "compiled",
     "orphans",
-    "plane_maps",
     "sizes",
     "kernels",
+    "variants",
     "batch",
     "draws",
     "designs",
@@ -139,7 +143,7 @@ LATE = {
     "uvicorn": {"studio"},
 }
 # load Numba with themselves, so come late too
-COMPILED = {"compiled", "orphans", "plane_maps", "sizes", "kernels"}
+COMPILED = {"compiled", "orphans", "plane_maps", "characteristics", "sizes", "kernels"}
 CORE = FLOW[: FLOW.index("net") + 1]
 MODULES = sorted(PACKAGE.rglob("*.py"))
 

@@ -164,7 +164,35 @@ def test_bounds_are_kept_unless_extrapolation_is_asked_for(blades):
     beyond = [SPACE.upper[0] + 0.02, 0, 0, 0]
     with pytest.raises(PerturbationError, match=r"t1 = .*, allowed is .*extrapolation"):
         blade.perturbed(SPACE, beyond)
-    assert blade.perturbed(SPACE, beyond, allow_extrapolation=True).deformations
+    taken = blade.perturbed(SPACE, beyond, allow_extrapolation=True, allow_odd=True)
+    found = {finding.where for finding in taken.findings}
+    assert "beyond the space's data" in found
+
+
+def test_it_is_where_sections_arrive_that_data_must_reach(blades):
+    blade = blades["nrel5mw"]  # whose outer sections lie at t1 = 0.18
+    with pytest.raises(
+        PerturbationError,
+        match=r"eta = .* itself at t1 = 0.\d*, arrives at t1 = 0.2.*to 0.2421.*--allow-extra",
+    ):
+        blade.perturbed(SPACE, [0.15, 0.0, 0.0, 0.0])
+    end = np.array([-0.16, 0.0, 0.0, 0.0])
+    assert SPACE.outside(end)  # and yet no section leaves the data
+    tip = bg.Coordinates([0.65, 0.7], [np.zeros(4), end])
+    assert blade.perturbed(SPACE, tip, allow_odd=True).deformations
+
+
+def test_odd_sections_are_refused_or_found(blades):
+    blade, groove = blades["dtu10mw"], [-0.04, -0.13, 0.06, -0.01]
+    asked = {"allow_extrapolation": True}
+    with pytest.raises(
+        PerturbationError, match=r"eta = 0\.\d+ \(near .* has a .*, at (most|least) .*--allow-odd"
+    ):
+        blade.perturbed(SPACE, groove, **asked)
+    taken = blade.perturbed(SPACE, groove, allow_odd=True, **asked)
+    said = [str(finding) for finding in taken.findings]
+    assert any("has a concave nose: its contour turns back by" in one for one in said)
+    assert not blade.perturbed(thickness=1.3, camber=0.9, chord=1.2).findings[len(blade.findings) :]
 
 
 def test_sections_that_cross_are_named_with_station_and_parameter(blades):
@@ -188,7 +216,7 @@ def test_noses_that_curl_up_between_the_spans_first_tested_are_found(
     assert not crossing_sections(variant.profiles(first))
     assert crossing_sections(variant.profiles(np.linspace(*where, 20)))
     with pytest.raises(PerturbationError, match=r"eta = 0\.1\d+ .* crosses itself with "):
-        variant.require_sound()
+        variant.require_sound(allow_odd=True)
 
 
 def test_a_blade_as_it_is_defined_is_sound(blades):
@@ -200,7 +228,9 @@ def test_deformations_that_eat_the_thickness_are_named(blades, monkeypatch):
     monkeypatch.setattr("bladegen.perturbation.LOST_THICKNESS", 1.5)
     monkeypatch.setattr("bladegen.perturbation.crossing_sections", lambda _: [])
     with pytest.raises(PerturbationError, match="loses its thickness with pga"):
-        blades["nrel5mw"].perturbed(SPACE, -np.array([0.1, 0.1, 0.0, 0.0]))
+        blades["nrel5mw"].perturbed(
+            SPACE, -np.array([0.1, 0.1, 0.0, 0.0]), allow_extrapolation=True
+        )
 
 
 @pytest.mark.parametrize(

@@ -91,7 +91,9 @@ class Motion:
         }
         t = np.array([values.get(f"t{k + 1}", 0.0) for k in range(self.space.dimension)])
         affine: Any = {name: value for name, value in values.items() if name in RANGES}
-        blade = self.blade.perturbed(self.space, t, **affine)
+        blade = self.blade.perturbed(  # to see where it leads
+            self.space, t, allow_extrapolation=True, allow_odd=True, **affine
+        )
         return blade, ", ".join(_word(name, value) for name, value in values.items())
 
 

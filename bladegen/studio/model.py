@@ -12,13 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.arrays import Array
+from bladegen.arrays import Array, Mask
 from bladegen.batch import FAULTS, Batch, SectionBatch
 from bladegen.blade import Blade
 from bladegen.deformation import AffineChange, Window
 from bladegen.families import THINNEST
 from bladegen.files import safe_stem
 from bladegen.pga import ShapeSpace
+from bladegen.sanity import KINDS
 from bladegen.studio.state import State
 
 __all__ = ["Baseline", "Check", "Curves", "Scene", "changes"]
@@ -26,7 +27,7 @@ __all__ = ["Baseline", "Check", "Curves", "Scene", "changes"]
 PERCENTS = np.linspace(0.0, 1.0, 101)  # where a section can be looked at
 BENDING = 40  # spans that follow the blade's bends
 SHOWN_LANDMARKS = 100  # of the surface, about
-DRAWS = 50
+DRAWS = 500
 
 
 @dataclass(frozen=True)
@@ -220,13 +221,17 @@ class Baseline:
         """Return a random variant that is sound, at the same window and section."""
         for _ in range(DRAWS):
             state = state.drawn(self.space, rng, reach)
-            faults, thickness = self._sections(state).faults(*self._asked(state))
-            if not faults.any() and thickness.min() >= THINNEST:
+            sections, asked = self._sections(state), self._asked(state)
+            if self._left(state).any():
+                continue
+            faults, thickness, looks = sections.tested(*asked)
+            odd = sections.oddities(looks).kinds.any()
+            if not (faults.any() or odd or thickness.min() < THINNEST):
                 break
         return state
 
     def variant(self, state: State) -> Blade:
-        """Return the blade of a state, tested.
+        """Return the blade of a state, tested; what the checks call odd is among its findings.
 
         Raises
         ------
@@ -238,7 +243,12 @@ class Baseline:
             return self.blade
         space = self.space if "t" in asked else None
         return self.blade.perturbed(
-            space, asked.pop("t", ()), name=f"{self.blade.name}-variant", **asked
+            space,
+            asked.pop("t", ()),
+            name=f"{self.blade.name}-variant",
+            allow_extrapolation=True,
+            allow_odd=True,
+            **asked,
         )
 
     def stem(self, state: State) -> str:
@@ -249,8 +259,9 @@ class Baseline:
         faults, thickness = batch.faults[0], batch.relative_thickness[0]
         crossing, broken = faults == FAULTS.index("crosses itself"), faults > 0
         thin = int(np.argmin(thickness))
-        spread = self.space.extent * np.sqrt(self.space.variances[: self.space.dimension])
-        radius = float(np.linalg.norm(np.array(state.t) / spread))
+        left = np.flatnonzero(self._left(state))
+        odd = self._sections(state).oddities(batch.looks)
+        strange = np.flatnonzero(odd.kinds[0])
         out, into = (
             np.unravel_index(f(deviation), deviation.shape) for f in (np.argmax, np.argmin)
         )
@@ -277,9 +288,16 @@ class Baseline:
                 f"{np.count_nonzero(crossing)} of {len(faults)} sections",
             ),
             Check(
-                "good" if radius <= 1.0 else "odd",
+                "odd" if left.size else "good",
                 "Shape in data",
-                f"{100 * radius:.0f} % of the way to the edge",
+                f"leaves the data's range at {self._at(left[0])}" if left.size else "all along",
+            ),
+            Check(
+                "odd" if strange.size else "good",
+                "Airfoils",
+                f"{KINDS[odd.kinds[0, strange[0]]]} at {self._at(strange[0])}"
+                if strange.size
+                else "no odd section",
             ),
             Check(
                 "good",
@@ -289,6 +307,13 @@ class Baseline:
                 else "0 mm",
             ),
         )
+
+    def _left(self, state: State) -> Mask:
+        """Tell which sections leave the space's data, (k,)."""
+        sections = self._sections(state)
+        assert sections.domain is not None  # a baseline has a space
+        left: Mask = sections.domain.left(sections.step(np.array([state.t])))[0]
+        return left
 
     def _at(self, k: Any) -> str:
         return f"{100 * self.eta[k]:.0f} % span"

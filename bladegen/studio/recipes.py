@@ -16,6 +16,7 @@ def shell(state: State, entry: Entry, stem: str) -> str:
     if any(state.t):
         # a value that starts with a minus would be taken for an option
         words.append("--pga=" + ",".join(f"{value:g}" for value in state.t))
+        words += ["--allow-extrapolation", "--allow-odd"]  # the checks have shown it
     for name, option in (
         ("thickness", "--thickness"),
         ("camber", "--camber"),
@@ -46,6 +47,7 @@ def python(state: State, entry: Entry, stem: str) -> str:
         asked = []
         if any(state.t):
             asked += ["bg.ShapeSpace.bundled()", repr(list(state.t))]
+            asked += ["allow_extrapolation=True", "allow_odd=True"]  # the checks have shown it
         asked += [
             f"{name}={getattr(state, field)!r}"
             for name, field in (

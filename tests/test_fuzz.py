@@ -275,10 +275,10 @@ def rows(points: np.ndarray) -> bytes:
 AIRFOILS = {
     "a million points": (b"1.0 0.0\n" * 120_000, "points, allowed are 10 to 5000"),
     "too large a file": (b"1.0 0.0\n" * MILLION, "is larger than 1000000 bytes"),
-    "nan": (b"foil\n" + b"1 0\n" * 9 + b"nan nan\n1 0\n", "not finite"),
-    "infinity": (b"foil\n" + b"1 0\n" * 9 + b"inf 0\n1 0\n", "not finite"),
+    "nan": (b"foil\n" + b"1 0\n" * 9 + b"nan nan\n1 0\n", "must be finite"),
+    "infinity": (b"foil\n" + b"1 0\n" * 9 + b"inf 0\n1 0\n", "must be finite"),
     "crossing": (rows(np.where(np.arange(59)[:, None] == 12, [0.7, -0.5], FOIL)), "crosses itself"),
-    "zero chord": (rows(FOIL * [0.0, 1.0]), "x spans 0, allowed is 0.01 to 10000"),
+    "zero chord": (rows(FOIL * [0.0, 1.0]), "x spans 0, allowed is 0.001 to 100000"),
     "huge": (rows(FOIL * 1e30), "x spans 1e+30"),
     "too high": (rows(FOIL * [1.0, 1e6]), "times the chord"),
     "nothing": (b"", "0 points"),

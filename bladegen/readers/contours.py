@@ -78,6 +78,10 @@ def contour(points: Array, *, any_unit: bool = False, fewest: int = FEWEST) -> C
     said: list[str] = []
     if not np.isfinite(points).all():
         raise ContourError("has a coordinate that is not finite")
+    if any_unit and len(points) > MAX_AIRFOIL_POINTS:
+        raise ContourError(
+            f"has {len(points)} points, allowed are {fewest} to {MAX_AIRFOIL_POINTS}"
+        )
     scale = _scale(points, said) if any_unit and len(points) >= fewest else 1.0
     points = _distinct(scale * points, said)
     if not fewest <= len(points) <= MAX_AIRFOIL_POINTS:

@@ -25,6 +25,7 @@ from bladegen.cli_options import (
     Producing,
     Target,
     grouped,
+    suffixes_of,
 )
 from bladegen.cli_perturb import NO_CHANGES, Changes
 from bladegen.cli_studio import studio
@@ -190,7 +191,7 @@ def build(
     ] = None,
 ) -> None:
     """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
-    options = producing.options()
+    options, suffixes = producing.options(), suffixes_of(formats)
     made = making.blade(blade, landmarks)
     made = made.mirror_image() if mirror else made
     whole = None
@@ -205,7 +206,7 @@ def build(
             hub_radius=None if hub_radius is None else metres(hub_radius, "hub-radius"),
             cone=None if precone is None else radians(precone, "precone"),
         )
-    _build(made, output, formats, options, whole)
+    _build(made, output, suffixes, options, whole)
 
 
 @app.command()
@@ -221,13 +222,18 @@ def perturb(
     mirror: Mirror = False,
 ) -> None:
     """Perturb a blade consistently and build it."""
-    options = producing.options()
+    if not changes.asked:
+        raise BladegenError(
+            f"perturb: nothing is to change; give --pga, --thickness, --twist or another change, "
+            f"or make the blade as it is: bladegen build {blade} -o {output}"
+        )
+    options, suffixes = producing.options(), suffixes_of(formats)
     made = changes.applied(making.blade(blade, landmarks))
-    _build(made.mirror_image() if mirror else made, output, formats, options)
+    _build(made.mirror_image() if mirror else made, output, suffixes, options)
 
 
 def _build(
-    blade: Any, output: Path, formats: list[str] | None, options: Any, rotor: Any = None
+    blade: Any, output: Path, formats: tuple[str, ...], options: Any, rotor: Any = None
 ) -> None:
     """Build a blade's files and print what was made, a missed tolerance included."""
     from bladegen.build import DEFAULT_FORMATS

@@ -73,7 +73,7 @@ def blade_of(file: str, airfoils: Path | None = None) -> Any:
     """Return the blade that a name or a definition means, None for other files."""
     from bladegen.readers import SUFFIXES, bundled
 
-    if file in bundled() or Path(file).suffix.lower() in SUFFIXES:
+    if file in bundled() or Path(file).suffix.lower() in ("", *SUFFIXES):
         return replace(MAKING, airfoils=airfoils).blade(file)
     return None
 

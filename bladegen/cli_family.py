@@ -17,6 +17,7 @@ from bladegen.cli_options import (
     Producing,
     Target,
     grouped,
+    suffixes_of,
 )
 from bladegen.cli_perturb import ChordLine
 from bladegen.errors import FamilyError
@@ -91,8 +92,9 @@ def family(
     from bladegen.pga import ShapeSpace
     from bladegen.texts import factor_bounds, factor_table, span_window
 
+    suffixes = suffixes_of(formats)
     known = None
-    if space != "none":
+    if space is None or space.lower() != "none":
         known = ShapeSpace.bundled() if space is None else ShapeSpace.load(space)
     if table is not None and (count is not None or vary):
         raise FamilyError("table: it says what varies and how often; leave --count and --vary out")
@@ -116,7 +118,7 @@ def family(
     order = Order(
         planned,
         output,
-        tuple(formats or ()),
+        suffixes,
         "float64" if double else "float32",
         producing.options(),
     )

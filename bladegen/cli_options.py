@@ -35,6 +35,7 @@ __all__ = [
     "Target",
     "ending_in",
     "grouped",
+    "suffixes_of",
 ]
 
 LANDMARKS = 401
@@ -95,7 +96,7 @@ Formats = Annotated[
         "--format",
         help="CAD: step iges brep; triangles: stl glb ply obj 3mf vtp; grids: p3d fmt cgns vtu; "
         "definitions: yaml (windIO 2) dat (OpenFAST) htc (HAWC2) csv xlsx; sections.csv; png. "
-        "May be repeated.",
+        "Several with commas, or repeated.",
     ),
 ]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
@@ -163,10 +164,16 @@ class Making:
 
     airfoils: Airfoils = None
     path: Annotated[
-        PathKind, typer.Option(help="Join stations by geodesics or by a smooth spline.")
+        PathKind,
+        typer.Option(
+            case_sensitive=False, help="Join stations by geodesics or by a smooth spline."
+        ),
     ] = PathKind.geodesic
     planes: Annotated[
-        Planes, typer.Option(help="Section planes normal to the reference axis or to z.")
+        Planes,
+        typer.Option(
+            case_sensitive=False, help="Section planes normal to the reference axis or to z."
+        ),
     ] = Planes.axis
     trailing_edge: Annotated[
         str,
@@ -216,11 +223,20 @@ class Producing:
         bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")
     ] = False
     stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300
-    tip: Annotated[TipKind, typer.Option(help="A flat or a rounded tip.")] = TipKind.flat
+    tip: Annotated[
+        TipKind,
+        typer.Option(case_sensitive=False, help="A flat or a rounded tip."),
+    ] = TipKind.flat
     unit: Annotated[
-        Unit, typer.Option(help="Unit of STL, PLY, OBJ, VTP, PLOT3D and VTU files.")
+        Unit,
+        typer.Option(
+            case_sensitive=False, help="Unit of STL, PLY, OBJ, VTP, PLOT3D and VTU files."
+        ),
     ] = Unit.m
-    step: Annotated[StepSchema, typer.Option(help="Schema of STEP files.")] = StepSchema.ap242
+    step: Annotated[
+        StepSchema,
+        typer.Option(case_sensitive=False, help="Schema of STEP files."),
+    ] = StepSchema.ap242
     grid_around: Annotated[
         int, typer.Option(help="Points around a section, odd.", rich_help_panel=GRIDS)
     ] = 257
@@ -273,6 +289,14 @@ class Producing:
 
 
 MAKING, PRODUCING = Making(), Producing()
+
+
+def suffixes_of(formats: list[str] | None) -> tuple[str, ...]:
+    """Return the suffixes of the formats that are asked for, none by default."""
+    from bladegen.exporters import FORMATS
+    from bladegen.texts import suffixes
+
+    return suffixes(formats, FORMATS) if formats else ()
 
 
 def grouped(command: Callable[..., None]) -> Callable[..., None]:

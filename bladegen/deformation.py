@@ -126,7 +126,11 @@ class Coordinates:
                 "m knots and m rows"
             )
         if not (np.all(np.diff(grid) > 0) and grid[0] >= 0 and grid[-1] <= 1):
-            raise PerturbationError("coordinates over span: knots must increase within 0 to 1")
+            places = ", ".join(f"{place:g}" for place in grid)
+            raise PerturbationError(
+                f"coordinates over span: got knots at {places}, must increase within 0 (root) to 1 "
+                "(tip)"
+            )
         object.__setattr__(self, "grid", grid)
         object.__setattr__(self, "values", values)
 

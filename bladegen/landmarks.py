@@ -79,7 +79,7 @@ def landmark_parameters(n: int, spacing: Spacing = clustered) -> Array:
         Arc-length fraction of a side, halved; symmetric about 0.5.
     """
     if n < 5 or n % 2 == 0:
-        raise GeometryError(f"landmarks: got n = {n}, allowed are odd numbers from 5")
+        raise GeometryError(f"landmarks: got {n}, allowed are odd numbers from 5, such as 401")
     even = np.linspace(0.0, 1.0, n // 2 + 1)
     spaced = numbers(spacing(even), "spacing", GeometryError)
     whole = spaced.shape == even.shape and (spaced[0], spaced[-1]) == (0.0, 1.0)

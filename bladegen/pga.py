@@ -147,7 +147,13 @@ class ShapeSpace:
             If the file is no space, is of another version, is damaged, or holds arrays that are
             no mean, modes and spread.
         """
-        arrays, about = load_arrays(path_of(path, "space", SpaceError), ARRAYS)
+        place = path_of(path, "space", SpaceError)
+        if not place.exists():
+            raise SpaceError(
+                f"{path}: is no file; the bundled space is ShapeSpace.bundled(), in the shell that "
+                "without --space"
+            )
+        arrays, about = load_arrays(place, ARRAYS)
         problem = problem_of(arrays)
         if problem is not None:
             raise SpaceError(f"{path}: is no shape space: {problem}")

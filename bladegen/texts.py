@@ -2,11 +2,12 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from bladegen.arguments import suggestion
 from bladegen.deformation import Coordinates, Window
 from bladegen.designs import Design, tabulated
 from bladegen.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
@@ -24,6 +25,7 @@ __all__ = [
     "metres",
     "radians",
     "span_window",
+    "suffixes",
 ]
 
 MANIFEST = ("index", "name", "valid", "reason", "attempts", "seed", "volume_m3", "surface_m2")
@@ -34,7 +36,30 @@ _ANGLE = re.compile(r"\s*([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(deg|°|ra
 _LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(um|mm|cm|m)\s*")
 
 
-def metres(text: str, field: str) -> float:
+def suffixes(texts: Sequence[str], known: Iterable[str]) -> tuple[str, ...]:
+    """Return the suffixes that formats are asked for by, several in one text or in many.
+
+    Raises
+    ------
+    BladegenError
+        If one is not known.
+
+    >>> suffixes(["step,stl", ".GLB"], [".step", ".stl", ".glb"])
+    ('step', 'stl', 'glb')
+    """
+    asked = [word for text in texts for word in re.split(r"[\s,;]+", text.lower()) if word]
+    found = [word.lstrip(".") for word in asked]
+    allowed = list(known)
+    for word in found or [""]:
+        if f".{word}" not in allowed:
+            raise BladegenError(
+                f"format: got {word!r}: no format has the suffix '.{word}', allowed are "
+                f"{', '.join(allowed)}{suggestion(word, allowed, lambda name: name.lstrip('.'))}"
+            )
+    return tuple(dict.fromkeys(found))
+
+
+def metres(text: str, field: str, others: str = "", example: str = "0.3mm") -> float:
     """Return a length with its unit in metres.
 
     Raises
@@ -49,7 +74,7 @@ def metres(text: str, field: str) -> float:
     if match is None:
         raise BladegenError(
             f"{field}: got {text!r}, must be a length with its unit ({', '.join(_METRES)}), "
-            "such as 0.3mm"
+            f"such as {example}{others}"
         )
     return float(f"{float(match[1]) * _METRES[match[2]]:.15g}")
 
@@ -210,11 +235,23 @@ def coordinates(texts: Sequence[str]) -> Coordinates | None:
         values, _, place = text.partition("@")
         if len(texts) > 1 and not place:
             raise BladegenError(f"pga: got {text!r}, must end in @ETA where several are given")
-        rows.append((_numbers(place, "pga")[0] if place else 0.0, _numbers(values, "pga")))
+        rows.append((_span(place) if place else 0.0, _numbers(values, "pga")))
     rows.sort(key=lambda row: row[0])
     if len({len(values) for _, values in rows}) > 1:
-        raise BladegenError("pga: all must have the same number of coordinates")
+        counts = " and ".join(str(len(values)) for _, values in rows)
+        raise BladegenError(f"pga: got {counts} coordinates, all must have the same number")
     return Coordinates(np.array([at for at, _ in rows]), np.array([values for _, values in rows]))
+
+
+def _span(text: str) -> float:
+    """Return the span fraction behind an @."""
+    try:
+        return float(text)
+    except ValueError:
+        raise BladegenError(
+            f"pga: got {text!r} behind @, must be a span fraction from 0 (root) to 1 (tip), such "
+            "as @0.5"
+        ) from None
 
 
 def span_window(text: str) -> Window:

@@ -129,7 +129,7 @@ def test_landmark_parameters_are_symmetric_and_increase(spacing, half):
 
 @pytest.mark.parametrize("n", [3, 100, 0, -5])
 def test_an_even_or_small_number_of_landmarks_is_refused(n):
-    with pytest.raises(GeometryError, match=f"n = {n}, allowed are odd numbers from 5"):
+    with pytest.raises(GeometryError, match=f"got {n}, allowed are odd numbers from 5"):
         lm.landmark_parameters(n)
 
 

@@ -242,18 +242,12 @@ def test_deformations_that_eat_the_thickness_are_named(blades, monkeypatch):
         ({"twist": 2.0}, "twist: got 2"),
         ({"prebend_scale": float("nan")}, "prebend_scale: got nan"),
         ({"t": [0.1]}, "coordinates need a shape space"),
-        ({"space": SPACE, "t": [0.1]}, "got 1 coordinates, the space has 4"),
+        ({"space": SPACE, "t": [0.1]}, "got 1 coordinates"),
     ],
 )
 def test_wrong_values_are_refused(blades, options, message):
     with pytest.raises(bg.BladegenError, match=message):
         blades["nrel5mw"].perturbed(**options)
-
-
-def test_a_space_of_other_landmarks_is_refused():
-    coarse = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
-    with pytest.raises(PerturbationError, match="of 401 landmarks, the blade of 101"):
-        coarse.perturbed(SPACE, T)
 
 
 def test_windows():

@@ -91,10 +91,12 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
     FileError
         If there is no such blade or file, or with all problems of the file at once.
     """
-    if not isinstance(source, str | Path):
+    if not isinstance(source, str | Path) or not str(source).strip():
         raise FileError(shown(source), ["must be the name of a bundled blade, or a file's path"])
     if airfoils is not None:
         airfoils = path_of(airfoils, "airfoils", DefinitionError)
+        if not airfoils.is_dir():
+            raise FileError(str(airfoils), ["is no folder, must be one of airfoil files"])
     path = _path(source)
     notes = Notes()
     try:

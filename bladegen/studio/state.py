@@ -161,7 +161,10 @@ class State:
         """Return the state with a window, or say why it is not allowed."""
         window = START.parsed(start), END.parsed(end)
         if window[0] > window[1]:
-            raise StudioError(f"window: got {window[0]:g} to {window[1]:g}, must rise")
+            raise StudioError(
+                f"{START.label}: the window got {window[0]:g} to {window[1]:g}, must rise: move "
+                f"{START.label} below {END.label}"
+            )
         return replace(self, window=window)
 
     def reset(self) -> "State":

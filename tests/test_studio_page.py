@@ -17,9 +17,11 @@ from test_readers_tables import TABLE, table
 import bladegen as bg
 from bladegen import checks
 from bladegen.errors import StudioError
+from bladegen.studio import server
 from bladegen.studio.library import Library
 from bladegen.studio.page import Page
 from bladegen.studio.server import serve
+from bladegen.studio.visits import MOST, Visits
 from bladegen.studio.worker import Worker
 
 WAIT = 600_000  # ms; far more than is needed, for machines that are busy
@@ -49,7 +51,17 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
 @pytest.fixture(scope="module")
-def address():
+def patient():
+    """Let a tab that a busy machine keeps away come back, instead of loading its page anew."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("RECONNECT", "PREPARING"):
+            patch.setattr(server, name, WAIT / 1000)
+        patch.setattr(Visits.__init__, "__defaults__", (MOST, WAIT / 1000))
+        yield
+
+
+@pytest.fixture(scope="module")
+def address(patient):
     """The address of a studio that is served on a thread."""
     served, ready = [], threading.Event()
 

@@ -63,9 +63,9 @@ def main() -> None:
     family = bg.family(blade, space, count=count, seed=7, reach=asked.reach)
     blocks = [np.arange(i, min(i + BLOCK, count)) for i in range(0, count, BLOCK)]
     shape = family.block(blocks[0][:2]).batch.sections.shape[1:]
-    variants = list(bg.family(blade, space, count=runs * LOOPED, seed=7, reach=asked.reach))
+    variants = list(bg.family(blade, space, count=1 + runs * LOOPED, seed=7, reach=asked.reach))
     shapes = iter([np.array(variant.changes[-1]["pga"][0]) for variant in variants])
-    blade.perturbed(space, 0.5 * np.array(variants[0].changes[-1]["pga"][0])).sections(family.eta)
+    blade.perturbed(space, next(shapes)).sections(family.eta)
 
     def on_threads(work: Callable[[np.ndarray], object]) -> list[object]:
         with ThreadPoolExecutor(THREADS) as pool, threadpool_limits(1):

@@ -51,7 +51,8 @@ def main() -> None:
             )
             for said, wanted in CHANGES[-2 if quick else 0 :]:
                 change = dict(wanted)
-                variant = blade.perturbed(space, change.pop("t", ()), **change)
+                shape = (space, change.pop("t")) if "t" in change else ()
+                variant = blade.perturbed(*shape, **change)
                 start = time.perf_counter()
                 bg.write(variant, path, polars="keep")
                 spent = time.perf_counter() - start

@@ -2,8 +2,8 @@
 
 Blade i depends on the seed and on i alone: one of the three blades, either path, either tip,
 either tolerance, trailing edges of 1, 2 or 5 mm, coordinates drawn from the whole of the space's
-data and all affine parameters.  A perturbation that `Blade.perturbed` refuses is counted and
-drawn again.  Each solid is written as STEP and read again: one closed valid solid, within
+data, odd sections among them, and all affine parameters.  A perturbation that is refused is counted
+and drawn again.  Each solid is written as STEP and read again: one closed valid solid, within
 tolerance, with the volume that was written; every tenth is held against the integral over its
 sections and meshed by gmsh besides.
 

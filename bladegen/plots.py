@@ -71,6 +71,7 @@ def dress(axis: Any) -> None:
 def titled(drawn: Any, blade: Blade, what: str, baseline: Blade | None = None) -> Any:
     """Give a figure of a blade its title; say what dashes are where no legend does."""
     name = visible(blade.definition.description or blade.name)
+    name += ", mirrored" if blade.mirrored else ""
     if blade.changes:
         name += f", perturbed: {blade.name}"
     dashes = "" if baseline is None else "; baseline dashed"

@@ -12,6 +12,7 @@ from bladegen import cad, checks, cli, exporters, mesh, net, properties
 from bladegen.errors import ExportError, FamilyError
 from bladegen.grid import Spacing
 from bladegen.grid import from_blade as grid_of
+from bladegen.preview.scene import scene_of
 from bladegen.rotor import rotor_of
 from bladegen.tips import flat_tip, round_tip
 
@@ -117,6 +118,11 @@ def test_the_command_mirrors_every_file_without_a_hub_radius(tmp_path):
     assert two.volume == pytest.approx(one.volume, rel=1e-6)
     refused = CliRunner().invoke(cli.app, [*command, "--format", "yaml"])
     assert isinstance(refused.exception, ExportError)
+
+
+def test_pictures_say_it(blade, image):
+    assert scene_of(image).title == "IEA 15 MW, mirrored"
+    assert scene_of(blade).title == "IEA 15 MW"
 
 
 def test_a_rotor_of_mirror_images_is_the_mirrored_rotor(blade, image):

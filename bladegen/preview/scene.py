@@ -310,6 +310,7 @@ def _reach(blade: Blade) -> tuple[float, float, float]:
 def _title(blade: Blade) -> str:
     definition = blade.definition
     title = visible(definition.description or definition.name)
+    title += ", mirrored" if blade.mirrored else ""
     return f"{title}, perturbed: {definition.name}" if blade.changes else title
 
 

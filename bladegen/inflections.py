@@ -4,8 +4,8 @@ Chord-normalised thickness, trailing edge's width and the heights of both sides 
 the chord (whose second derivatives are the surface's curvature along the span, chord, twist and
 axis apart) are functions of span.  Each is held against what the definition says of it: its
 thickness distribution, or a monotone spline through the stations' own values in the path's
-parameter.  Where a quantity changes the sense in which it bends and that spline does not, and
-bends by more than noise on both sides, there is a finding.
+parameter.  Where a quantity changes the sense in which it bends, by more than noise on both sides,
+and that spline does not bend so over the same two stretches, there is a finding.
 """
 
 from dataclasses import dataclass
@@ -21,9 +21,8 @@ from bladegen.spanwise import sides
 __all__ = ["DEPTH", "Inflection", "bends", "inflections"]
 
 DEPTH = 1e-3  # of chord; shallower bends are noise of airfoils and of their blending
-OWN_DEPTH = DEPTH / 4  # bends of the definition count from here on, so that none is held against it
+OWN_SHARE = 0.25  # of a bend: what the definition must have of it, so as not to be told of it
 SPANS = 601
-NEAR = 0.5  # of the distance between stations; an inflection may move by so much
 PLACES = np.array([0.05, 0.15, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95])  # of chord
 
 
@@ -53,15 +52,14 @@ def inflections(blade: Blade) -> list[Inflection]:
     at = np.searchsorted(grid, stations)
     found = []
     for name, values, own in _quantities(blade, grid, at):
-        wanted = _changes(grid, own, OWN_DEPTH)
-        for change, place, depth in _changes(grid, values, DEPTH):
-            cell = int(np.clip(np.searchsorted(stations, place) - 1, 0, len(stations) - 2))
-            reach = NEAR * (stations[cell + 1] - stations[cell])
-            same = [w for w in wanted if w[0] == change and abs(w[1] - place) <= reach]
-            if same:
-                wanted.remove(min(same, key=lambda w: abs(w[1] - place)))
-            else:
-                found.append(Inflection(name, place, depth))
+        for before, behind in pairwise(bends(grid, values, DEPTH)):
+            shares = [
+                _depth(grid, own, first, last, sense) / depth
+                for first, last, sense, depth in (before, behind)
+            ]
+            if min(shares) < OWN_SHARE:
+                place = float(0.5 * (grid[before[1]] + grid[behind[0]]))
+                found.append(Inflection(name, place, min(before[3], behind[3])))
     return sorted(found, key=lambda inflection: -inflection.depth)
 
 
@@ -104,15 +102,6 @@ def _depth(grid: Array, values: Array, first: int, last: int, sense: int) -> flo
     part = slice(first, last + 1)
     ends = np.interp(grid[part], grid[[first, last]], values[[first, last]])
     return float(np.max(sense * (ends - values[part])))
-
-
-def _changes(grid: Array, values: Array, depth: float) -> list[tuple[int, float, float]]:
-    """Return where a function's sense of bending changes: to which sense, where, how deep."""
-    runs = bends(grid, values, depth)
-    return [
-        (sense, float(0.5 * (grid[end] + grid[start])), min(deep, deeper))
-        for (_, end, _, deep), (start, _, sense, deeper) in pairwise(runs)
-    ]
 
 
 def _quantities(blade: Blade, grid: Array, at: Indices) -> list[tuple[str, Array, Array]]:

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
+from bladegen import writers
 from bladegen.checks import check_blade
 from bladegen.definition import Airfoil, Distribution, Station, pchip
 from bladegen.inflections import DEPTH, bends, inflections
@@ -72,3 +73,21 @@ def test_findings_say_what_and_where():
     made = replace(made, edge_width=dented)
     findings = check_blade(made).figures["findings"]
     assert any("edge's width has an inflection over span" in text for text in findings)
+
+
+def test_a_bend_that_lies_elsewhere_is_no_other_bend():
+    """The definition's own inflection is not told of where its path only moves it."""
+    blade = bg.Blade.from_definition(flatback(bg.read("dtu10mw")), landmarks=101)
+
+    def moved(knots, values):
+        spline = pchip(knots, values)
+        return lambda q, nu=0: spline(np.clip(np.asarray(q) ** 1.1, knots[0], knots[-1]), nu)
+
+    assert inflections(replace(blade, edge_width=moved)) == []
+
+
+@pytest.mark.parametrize("name", bg.bundled())
+def test_a_converted_copy_has_no_inflection_that_its_source_has_not(name, tmp_path):
+    """OpenFAST's files have a station at every node; the sources have no inflection."""
+    writers.write(bg.read(name), tmp_path / "copy.dat", format="openfast")
+    assert inflections(bg.Blade.from_definition(bg.read(tmp_path / "copy.dat"))) == []

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,10 +24,12 @@ from bladegen.mesh import TriangleMesh
 __all__ = [
     "READERS",
     "STEP_SCHEMAS",
+    "FaceTriangles",
     "read",
     "read_brep",
     "read_iges",
     "read_step",
+    "triangles_of",
     "triangulated",
     "write_brep",
     "write_iges",
@@ -218,11 +220,9 @@ def triangulated(shape: Any, deflection: float) -> TriangleMesh:
     CadError
         If OCCT makes no triangles of it.
     """
-    from OCP.BRep import BRep_Tool
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
     from OCP.TopExp import TopExp_Explorer
-    from OCP.TopLoc import TopLoc_Location
     from OCP.TopoDS import TopoDS
 
     BRepMesh_IncrementalMesh(shape, deflection * MILLIMETRES, False, ANGLE, True)
@@ -230,23 +230,52 @@ def triangulated(shape: Any, deflection: float) -> TriangleMesh:
     triangles: list[Indices] = []
     count, explorer = 0, TopExp_Explorer(shape, TopAbs_FACE)
     while explorer.More():
-        face, place = TopoDS.Face_s(explorer.Current()), TopLoc_Location()
-        part = BRep_Tool.Triangulation_s(face, place)
+        face = TopoDS.Face_s(explorer.Current())
         explorer.Next()
+        part = triangles_of(face)
         if part is None:
             continue
-        nodes = [
-            part.Node(i + 1).Transformed(place.Transformation()) for i in range(part.NbNodes())
-        ]
-        corners = np.array([part.Triangle(i + 1).Get() for i in range(part.NbTriangles())])
-        if face.Orientation() == TopAbs_REVERSED:
-            corners = corners[:, ::-1]
-        points.append(np.array([(p.X(), p.Y(), p.Z()) for p in nodes]) / MILLIMETRES)
-        triangles.append(corners.reshape(-1, 3) - 1 + count)
-        count += len(nodes)
+        back = face.Orientation() == TopAbs_REVERSED
+        points.append(part.points / MILLIMETRES)
+        triangles.append((part.corners[:, ::-1] if back else part.corners) + count)
+        count += len(part.points)
     if not points:
         raise CadError("OCCT makes no triangles of this shape")
     return TriangleMesh(np.concatenate(points), np.concatenate(triangles))
+
+
+class FaceTriangles(NamedTuple):
+    """A face's triangles as OCCT keeps them, whichever way the face looks.
+
+    Parameters
+    ----------
+    points : (v, 3) array
+        Corners [mm].
+    corners : (f, 3) array of int
+        Of each triangle.
+    uv : (v, 2) array
+        Parameters of the points on the face's surface.
+    """
+
+    points: Array
+    corners: Indices
+    uv: Array
+
+
+def triangles_of(face: Any) -> FaceTriangles | None:
+    """Return the triangles of a face that `BRepMesh` has meshed, None where it failed."""
+    from OCP.BRep import BRep_Tool
+    from OCP.TopLoc import TopLoc_Location
+
+    place = TopLoc_Location()
+    part = BRep_Tool.Triangulation_s(face, place)
+    if part is None or not part.NbTriangles():
+        return None
+    move, count = place.Transformation(), range(1, part.NbNodes() + 1)
+    points = [part.Node(i).Transformed(move).Coord() for i in count]
+    corners = [part.Triangle(i).Get() for i in range(1, part.NbTriangles() + 1)]
+    uv = [part.UVNode(i).Coord() for i in count] if part.HasUVNodes() else np.zeros((0, 2))
+    return FaceTriangles(np.array(points), np.array(corners) - 1, np.array(uv))
 
 
 def _name_product(model: Any, name: str) -> None:

@@ -4,29 +4,21 @@ Every figure is measured on the thing itself, never assumed from how it was made
 are metres, volumes m3; STEP files state their unit, mesh files do not and are taken as they are.
 """
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bladegen import (
-    affine,
-    cad,
-    cad_files,
-    inflections,
-    mesh,
-    polygons,
-    properties,
-    smoothness,
-)
+from bladegen import affine, foreign, inflections, polygons, properties, smoothness
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.chord_lines import ChordLines
 from bladegen.crossing import crossing_sections
 from bladegen.edges import MinimumThickness
-from bladegen.errors import FileError, Finding
+from bladegen.errors import Finding
+from bladegen.file_figures import mesh_figures, solid_figures
 from bladegen.sections import SectionSplines
 
 __all__ = ["Check", "check_blade", "check_file", "mesh_figures", "solid_figures"]
@@ -34,8 +26,6 @@ __all__ = ["Check", "check_blade", "check_file", "mesh_figures", "solid_figures"
 SPANS = 200  # spans at which a blade is held against its definition
 ADDED = 0.01  # of the volume: what the finish of trailing edges may add without a finding
 SAME = 1e-9  # relative, of thicknesses that differ by rounding
-SLIVER = 1e-12  # of a mesh's extent; triangles lower than this are degenerate
-MEMBERS = ("solids", "shells", "faces")
 
 
 @dataclass(frozen=True)
@@ -68,75 +58,22 @@ def check_file(path: Path) -> Check:
     FileError
         If it cannot be read or is of no known format.
     """
-    suffix = path.suffix.lower()
-    if suffix not in _READERS:
-        raise FileError(str(path), [f"suffix {suffix!r}, allowed are {', '.join(_READERS)}"])
-    if not path.is_file():
-        raise FileError(str(path), ["is no file"])
-    kind, reader, measure, wanted = _READERS[suffix]
-    figures = measure(reader(path))
-    problems = tuple(message for key, message in wanted if not figures[key])
-    return Check(str(path), kind, figures, problems)
+    kind = foreign.kind_of(path)
+    figures = foreign.ask("figures", path).facts
+    wanted = _NEEDS[kind]
+    problems = [message for key, message in wanted if not figures[key]]
+    odd = [key for key, value in figures.items() if not _finite(value)]
+    problems += [f"its {key.rpartition('_')[0] or key} is no finite number" for key in odd]
+    if kind == "solid" and "volume_m3" not in odd and figures["closed"]:
+        problems += ["encloses no volume"] if figures["volume_m3"] <= 0 else []
+    return Check(str(path), kind, figures | dict.fromkeys(odd), tuple(problems))
 
 
-def solid_figures(shape: Any, *, quick: bool = False) -> dict[str, Any]:
-    """Measure a shape of OCCT [mm]: topology, validity, volume, area, bounding box.
-
-    `quick` takes OCCT's coarse volume, off by up to 1e-3: good for comparing a shape with
-    its copy, not for quoting.
-    """
-    from OCP.Bnd import Bnd_Box
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepBndLib import BRepBndLib
-    from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-    from OCP.TopExp import TopExp_Explorer
-
-    members: dict[str, list[Any]] = {}
-    for key, kind in zip(MEMBERS, (TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE), strict=True):
-        explorer, found = TopExp_Explorer(shape, kind), []
-        while explorer.More():
-            found.append(explorer.Current())
-            explorer.Next()
-        members[key] = found
-    box = Bnd_Box()
-    BRepBndLib.AddOptimal_s(shape, box, False, False)
-    bounds = np.array(box.Get() if not box.IsVoid() else (0.0,) * 6) / cad.MILLIMETRES
-    shells = members["shells"]
-    closed = bool(shells) and all(BRep_Tool.IsClosed_s(shell) for shell in shells)
-    volume = cad.quick_volume if quick else cad.volume
-    return {
-        **{key: len(found) for key, found in members.items()},
-        "valid": cad.is_valid(shape),
-        "closed": closed,
-        "one_solid": len(members["solids"]) == 1,
-        "volume_m3": volume(shape) / cad.MILLIMETRES**3,
-        "area_m2": cad.area(shape) / cad.MILLIMETRES**2,
-        "bounds_m": _bounds(bounds.reshape(2, 3)),
-    }
-
-
-def mesh_figures(triangles: Any) -> dict[str, Any]:
-    """Measure a trimesh.Trimesh: closedness, orientation, volume, area, bounding box."""
-    own = mesh.TriangleMesh(triangles.vertices, triangles.faces)
-    extent = float(np.ptp(own.vertices, axis=0).max())
-    corners = np.asarray(triangles.triangles)
-    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    height = np.divide(
-        2.0 * triangles.area_faces, longest, out=np.zeros_like(longest), where=longest > 0
-    )
-    degenerate = int(np.count_nonzero(height <= SLIVER * extent))
-    watertight = bool(triangles.is_watertight)
-    return {
-        "triangles": len(triangles.faces),
-        "vertices": len(triangles.vertices),
-        "watertight": watertight,
-        "outward": watertight and bool(triangles.is_winding_consistent and own.volume > 0),
-        "degenerate_triangles": degenerate,
-        "no_degenerate_triangle": degenerate == 0,
-        "volume": own.volume,
-        "area": own.area,
-        "bounds": _bounds(np.asarray(triangles.bounds)),
-    }
+def _finite(value: Any) -> bool:
+    """Tell whether all numbers of a figure are finite."""
+    if isinstance(value, list):
+        return all(_finite(member) for member in value)
+    return not isinstance(value, float) or math.isfinite(value)
 
 
 def check_blade(blade: Blade) -> Check:
@@ -274,29 +211,15 @@ def _twist_error(blade: Blade, eta: Array, profiles: Array) -> Array:
     return error
 
 
-def _bounds(corners: Array) -> list[list[float]]:
-    return [[round(float(value), 6) for value in corner] for corner in corners]
-
-
-_SOLID_NEEDS = (
-    ("one_solid", "must be one solid"),
-    ("valid", "OCCT finds the shape invalid"),
-    ("closed", "is not closed"),
-)
-_MESH_NEEDS = (
-    ("watertight", "is not watertight"),
-    ("outward", "does not face outward throughout"),
-    ("no_degenerate_triangle", "has degenerate triangles"),
-)
-_Reader = tuple[
-    str,
-    Callable[[Path], Any],
-    Callable[[Any], dict[str, Any]],
-    tuple[tuple[str, str], ...],
-]
-_SOLID: _Reader = ("solid", cad_files.read, solid_figures, _SOLID_NEEDS)
-_MESH: _Reader = ("mesh", mesh.read, mesh_figures, _MESH_NEEDS)
-_READERS = {
-    **dict.fromkeys(cad_files.READERS, _SOLID),
-    **dict.fromkeys((".stl", ".glb", ".ply", ".obj", ".3mf", ".off"), _MESH),
+_NEEDS = {
+    "solid": (
+        ("one_solid", "must be one solid"),
+        ("valid", "OCCT finds the shape invalid"),
+        ("closed", "is not closed"),
+    ),
+    "mesh": (
+        ("watertight", "is not watertight"),
+        ("outward", "does not face outward throughout"),
+        ("no_degenerate_triangle", "has degenerate triangles"),
+    ),
 }

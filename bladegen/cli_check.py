@@ -92,15 +92,17 @@ def _compare(
         things, differing = alike(things)
         one, two = (surface_of(thing) for thing in things)
         progress("measuring distances")
-        found, note = compared(one, two)
+        found = compared(one, two)
         if screenshot is not None:
             progress("rendering")
             with replacing(screenshot) as temporary:
                 draw(found, f"{file} against {other}", temporary)
     if as_json:
-        figures = {"source": file, "other": other, **found.figures, "bands": found.bands()}
-        typer.echo(json.dumps(figures | {"note": note, "made": differing}, indent=2))
+        said = {"source": file, "other": other, "note": "; ".join(found.notes), "made": differing}
+        typer.echo(json.dumps({**said, **found.figures, "bands": found.bands()}, indent=2))
         return
+    for note in (*found.notes, *differing):  # first: all that follows rests on it
+        typer.echo(f"note: {note}")
     print_figures(f"{file} against {other}", found.figures)
     rows = [
         [
@@ -110,9 +112,5 @@ def _compare(
         for band in found.bands()
     ]
     print_table(["z, m", "largest, mm", "RMS, mm", "mean (outside +), mm"], rows)
-    if note:
-        typer.echo(f"note: {note}")
-    for said in differing:
-        typer.echo(f"note: {said}")
     if screenshot is not None:
         typer.echo(f"wrote {screenshot}")

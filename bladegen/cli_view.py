@@ -194,7 +194,7 @@ def _compare(
             comparison.surface_of(blade_of(name, airfoils) or Path(name)) for name in (one, other)
         ]
         progress("measuring distances")
-        found, note = comparison.compared(*surfaces)
+        found = comparison.compared(*surfaces)
         progress("drawing")
         if screenshot is not None:
             with replacing(screenshot) as temporary:
@@ -202,7 +202,7 @@ def _compare(
         if html is not None:
             with replacing(html) as temporary:
                 write_page(comparison.scene(found, title), temporary, colour="distance")
-    if note:
+    for note in found.notes:
         typer.echo(f"note: {note}")
     for path in (screenshot, html):
         if path is not None:

@@ -1,8 +1,8 @@
 """How far two surfaces lie apart: files of any kind, or blades, each way and over span.
 
-Distances are exact to the triangles (VTK's implicit distance): CAD files are triangulated to
-`DEFLECTION`, blades to `mesh.SECTIONS` sections.  Metres; the blade frame's z is the span.
-pyvista is imported when first needed.
+Distances are exact to the surfaces: to the patches of CAD files and blades, to the triangles of
+meshes (`distances`).  Metres; the blade frame's z is the span.  pyvista is imported when first
+needed.
 """
 
 from dataclasses import dataclass
@@ -10,34 +10,52 @@ from pathlib import Path
 
 import numpy as np
 
-from bladegen import cad_files, mesh
+from bladegen import distances, foreign, surfaces
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.errors import FileError
 from bladegen.mesh import TriangleMesh
 from bladegen.preview import quietly, require_renderer
 from bladegen.preview.cameras import VIEWS
-from bladegen.preview.drawing import (
-    add_colour_bar,
-    add_surface,
-    cuts,
-    dress,
-    look,
-    shaded,
-    signed_distances,
-)
+from bladegen.preview.drawing import add_colour_bar, add_surface, cuts, dress, look, shaded
 from bladegen.preview.picture import save_image
 from bladegen.preview.renderer import image_of
 from bladegen.preview.scene import MILLIMETRES, Field, Layer, Scene
 from bladegen.style import INK, STATION
+from bladegen.surfaces import Surface
 
-__all__ = ["Comparison", "compared", "draw", "scene", "surface_of"]
+__all__ = ["Comparison", "Side", "compared", "draw", "scene", "surface_of"]
 
-DEFLECTION = 1e-3  # m, of triangles to the CAD surface they stand for; finer takes minutes
 BANDS = 10  # of the span, in the table
-SAME_SCALE = 30.0  # sizes that differ by more are in other units: a mesh file names none
-MESHES = (".stl", ".glb", ".ply", ".obj", ".3mf", ".off")
+THOUSAND = 1000.0  # the one factor between units that is ever looked for
+ALIKE = 0.01  # of the size, to which it must then fit
+SAME_SCALE = 3.0  # sizes that differ by more are worth a word
 SIZE = (1600, 700)  # pixels
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """One of the two things that are compared.
+
+    Parameters
+    ----------
+    name : str
+        What it is and which file, as a sentence begins with it.
+    surface : Surface
+        Its surface [m], or in a mesh file's own unit.
+    measured : bool
+        Whether its unit is known: mesh files but GLB and 3MF name none.
+    defined : bool
+        Whether it is a blade, whose metres are right.
+    remarks : tuple of str
+        What the result should say of it.
+    """
+
+    name: str
+    surface: Surface
+    measured: bool = True
+    defined: bool = False
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,16 +64,23 @@ class Comparison:
 
     Parameters
     ----------
-    one, other : TriangleMesh
+    one, other : Surface
         The surfaces [m].
+    at_one, at_other : (v, 3), (w, 3) arrays
+        Points of each.
     of_one, of_other : (v,), (w,) arrays
-        From the vertices of each to the other's surface.
+        From these points to the other's surface.
+    notes : tuple of str
+        What the result says first: of units, of what was left out.
     """
 
-    one: TriangleMesh
-    other: TriangleMesh
+    one: Surface
+    other: Surface
+    at_one: Array
+    at_other: Array
     of_one: Array
     of_other: Array
+    notes: tuple[str, ...] = ()
 
     @property
     def figures(self) -> dict[str, float]:
@@ -69,9 +94,9 @@ class Comparison:
 
     def bands(self) -> list[dict[str, float]]:
         """Return the same figures for equal bands of the first surface's z."""
-        z = np.concatenate([self.one.vertices[:, 2], self.other.vertices[:, 2]])
+        z = np.concatenate([self.at_one[:, 2], self.at_other[:, 2]])
         distance = MILLIMETRES * np.concatenate([self.of_one, self.of_other])
-        low, high = self.one.vertices[:, 2].min(), self.one.vertices[:, 2].max()
+        low, high = self.at_one[:, 2].min(), self.at_one[:, 2].max()
         edges = np.linspace(low, high, BANDS + 1)
         band = np.clip(np.searchsorted(edges, z, side="right") - 1, 0, BANDS - 1)
         rows = []
@@ -90,45 +115,75 @@ class Comparison:
         return rows
 
 
-def surface_of(source: Path | Blade) -> TriangleMesh:
-    """Return the surface of a file or a blade as triangles [m].
+def surface_of(source: Path | Blade) -> Side:
+    """Return the surface of a file or a blade.
 
     Raises
     ------
     FileError
-        If the file is of no kind that has a surface.
+        If the file is of no kind that has a surface, or cannot be read.
     """
     if isinstance(source, Blade):
-        return mesh.from_blade(source)
-    suffix = source.suffix.lower()
-    if not source.is_file():
-        raise FileError(str(source), ["is no file"])
-    if suffix in cad_files.READERS:
-        return cad_files.triangulated(cad_files.read(source), DEFLECTION)
-    if suffix in MESHES:
-        triangles = mesh.read(source)
-        return TriangleMesh(triangles.vertices, triangles.faces)
-    allowed = ", ".join([*cad_files.READERS, *MESHES])
-    raise FileError(str(source), [f"suffix {suffix!r}, allowed are {allowed}"])
+        name = Path(source.definition.source).name or source.name
+        return Side(f"the definition {name}", surfaces.of_blade(source), defined=True)
+    answer = foreign.ask("surface", source)
+    numbers = [values for values in answer.arrays.values() if values.dtype.kind == "f"]
+    weights = [values for name, values in answer.arrays.items() if name.endswith("/weights")]
+    sound = all(np.isfinite(n).all() for n in numbers) and all((w > 0).all() for w in weights)
+    if not sound:
+        raise FileError(str(source), ["has a surface of points that are no numbers"])
+    if foreign.kind_of(source) == "solid":
+        surface = surfaces.of_faces(answer.arrays)
+    else:
+        surface = surfaces.of_mesh(TriangleMesh(answer.arrays["vertices"], answer.arrays["faces"]))
+    if not surface.size > 0.0:
+        raise FileError(str(source), ["has a surface that is one point"])
+    metres, lost = answer.facts["metres"], answer.facts["lost"]
+    kind = source.suffix.lstrip(".").upper().replace("STP", "STEP").replace("IGS", "IGES")
+    return Side(
+        f"the {kind} file {source.name}",
+        surface if metres is None else surface.scaled(metres),
+        measured=metres is not None,
+        remarks=(f"{source.name}: {lost} of its faces could not be read",) if lost else (),
+    )
 
 
-def compared(one: TriangleMesh, other: TriangleMesh) -> tuple[Comparison, str]:
+def compared(one: Side, other: Side) -> Comparison:
     """Measure two surfaces against each other.
 
-    Returns
-    -------
-    Comparison
-    str
-        What was assumed of units, or "": mesh files name none, so a surface a thousand times
-        as large as the other is taken to be in millimetres.
+    A mesh without a unit that is a thousand times as large as the other, to 1 %, is taken to be
+    in millimetres.  Units that are known are believed: where sizes differ by a thousand the notes
+    say so, and the comparison goes on in the metres of the definition, or of `other`.
     """
-    sizes = [float(np.ptp(surface.vertices, axis=0).max()) for surface in (one, other)]
-    ratio, note = sizes[0] / sizes[1], ""
-    if ratio > SAME_SCALE:
-        one, note = _shrunk(one), "the first file is taken to be in millimetres"
-    elif ratio < 1.0 / SAME_SCALE:
-        other, note = _shrunk(other), "the second file is taken to be in millimetres"
-    return Comparison(one, other, signed_distances(one, other), signed_distances(other, one)), note
+    first, second, notes = _in_one_unit(one, other)
+    at_one, of_one = distances.between(first, second)
+    at_other, of_other = distances.between(second, first)
+    notes = (*notes, *one.remarks, *other.remarks)
+    return Comparison(first, second, at_one, at_other, of_one, of_other, notes)
+
+
+def _in_one_unit(one: Side, other: Side) -> tuple[Surface, Surface, tuple[str, ...]]:
+    """Return both surfaces in the same unit, and what must be said of it."""
+    ratio = one.surface.size / other.surface.size
+    large, small = (one, other) if ratio > 1.0 else (other, one)
+    times = max(ratio, 1.0 / ratio)
+    if abs(times / THOUSAND - 1.0) > ALIKE:
+        note = f"{large.name} is {times:.4g} times as large as {small.name}; compared as they are"
+        return one.surface, other.surface, (note,) if times > SAME_SCALE else ()
+    fit = f"so scaled, their sizes agree to {max(100 * abs(times / THOUSAND - 1.0), 0.01):.2g} %"
+    if not large.measured:
+        moved, factor = large, 1.0 / THOUSAND
+        note = f"{large.name} names no unit and is taken to be in millimetres; {fit}"
+    else:
+        moved, still = (one, other) if other.defined or not one.defined else (other, one)
+        factor = 1.0 / THOUSAND if moved is large else THOUSAND
+        size = "a thousand times" if moved is large else "a thousandth of"
+        note = (
+            f"{moved.name} is {size} {still.name}; the comparison goes on in the metres of "
+            f"{still.name}; {fit}"
+        )
+    first, second = (s.surface.scaled(factor) if s is moved else s.surface for s in (one, other))
+    return first, second, (note,)
 
 
 def scene(comparison: Comparison, title: str) -> Scene:
@@ -136,8 +191,8 @@ def scene(comparison: Comparison, title: str) -> Scene:
 
     Fields and layers have the names of a perturbed blade's, so that the same keys show them.
     """
-    shown, other = comparison.one, comparison.other
-    distance = MILLIMETRES * comparison.of_one
+    shown, other = comparison.one.mesh, comparison.other.mesh
+    distance = MILLIMETRES * distances.signed(shown.vertices, comparison.other)
     label = "distance from the other, mm, outside positive"
     figures = comparison.figures
     return Scene(
@@ -178,7 +233,3 @@ def draw(comparison: Comparison, title: str, path: Path) -> None:
                 add_colour_bar(plotter, actor, field.label)
         image = image_of(plotter, f"{path}: the picture")
     save_image(image, path)
-
-
-def _shrunk(surface: TriangleMesh) -> TriangleMesh:
-    return TriangleMesh(surface.vertices / MILLIMETRES, surface.faces)

@@ -27,6 +27,8 @@ __all__ = [
     "TriangleMesh",
     "assembled",
     "from_blade",
+    "read",
+    "sound",
     "surface",
     "to_trimesh",
     "with_steady_ids",
@@ -34,6 +36,7 @@ __all__ = [
 
 ACROSS = 16  # quads across a rounded tip
 SECTIONS = 300  # 300 x 401 landmarks make 240,000 triangles
+FARTHEST = 1e9  # of a vertex of a file, in its unit: products of three lengths stay finite
 SAME_POINT = 1e-9  # m; landmarks nearer than this are one vertex
 
 
@@ -200,20 +203,47 @@ _UUID = re.compile(rb"(?<=UUID=\")[0-9a-fA-F-]{36}(?=\")")
 def read(path: Path) -> Any:
     """Read a mesh file of any format that trimesh knows, as one trimesh.Trimesh.
 
+    Files that it names beside itself (materials, pictures) are not opened.
+
     Raises
     ------
     FileError
-        If trimesh cannot make triangles of it.
+        If trimesh cannot make sound triangles of it.
     """
     import trimesh
 
     try:
-        triangles = trimesh.load_mesh(path)
+        with path.open("rb") as stream:
+            kind = path.suffix.lower().lstrip(".")
+            loaded = trimesh.load_mesh(stream, file_type=kind, resolver=None)
+        vertices, faces = loaded.vertices, loaded.faces
     except Exception as error:  # trimesh's loaders raise whatever their parsers do
-        raise FileError(str(path), [f"is no mesh that can be read: {error}"]) from None
-    if not len(triangles.faces):
+        text = f"{type(error).__name__} {error}"
+        raise FileError(str(path), [f"is no mesh that can be read: {text}"]) from None
+    return sound(path, vertices, faces, loaded)
+
+
+def sound(path: Path, vertices: Array, faces: Indices, made: Any = None) -> Any:
+    """Return triangles of a file as a trimesh.Trimesh, `made` if there is one already.
+
+    Raises
+    ------
+    FileError
+        If there are none, one leads to a vertex that is not there, or a coordinate is no number.
+    """
+    if not len(faces):
         raise FileError(str(path), ["holds no triangles"])
-    return triangles
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        bad = int(faces.min() if faces.min() < 0 else faces.max())
+        raise FileError(
+            str(path), [f"a triangle names vertex {bad}, allowed are 0 to {len(vertices) - 1}"]
+        )
+    used = np.asarray(vertices)[np.unique(faces)]
+    if not np.isfinite(used).all() or np.abs(used).max() > FARTHEST:
+        raise FileError(
+            str(path), [f"has vertices that are no numbers, or farther away than {FARTHEST:g}"]
+        )
+    return to_trimesh(TriangleMesh(vertices, faces)) if made is None else made
 
 
 def _quads(points: Array, a: Indices, b: Indices, c: Indices, d: Indices) -> Indices:

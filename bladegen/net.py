@@ -23,6 +23,7 @@ __all__ = [
     "cone_volume",
     "fit",
     "fitted",
+    "resolving_landmarks",
 ]
 
 DEGREE = 3
@@ -35,6 +36,7 @@ MENDINGS = 6  # single sections that may be added where the final measurement is
 MAXIMUM_SHARE = 0.5  # of the tolerance may be spent between sections at most
 RMS_SHARE = 0.08  # and in the mean; the rest is left to what lies between landmarks
 CLOSED_EDGE = 1e-7  # m; a trailing edge thinner than this everywhere is sharp
+BETWEEN = (0.25, 0.5, 0.75)  # of the way between landmarks, where a net is measured
 COARSE = (4, 2, 1)  # strides through the blade's landmarks to begin with
 BETWEEN_SHARE = 0.6  # of the tolerance, between landmarks: where more is missed, some are added
 
@@ -240,7 +242,7 @@ def fitted(
     v = spans
     if v is None:
         v = blade.stations(FIRST_SECTIONS if sections is None else sections)
-    u = blade.u if sections is not None else _landmarks(blade, v, tolerance)
+    u = blade.u if sections is not None else resolving_landmarks(blade, v, tolerance)
     for _ in range(REFINEMENTS):
         progress(f"fitting {len(v)} sections")
         net = fit(_sections(blade, v, u), u, v)
@@ -271,7 +273,7 @@ def _sections(blade: Blade, v: Array, u: Array) -> Array:
     return blade.sections(v, None if u is blade.u else u)
 
 
-def _landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
+def resolving_landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
     """Return as few landmark parameters as keep splines close to the airfoils' own.
 
     Every so many-th of the blade's to begin with, then more where they are needed, on both
@@ -303,13 +305,14 @@ def _landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
 
 
 def deviation(net: SurfaceNet, blade: Blade) -> Deviation:
-    """Measure a net against its blade, midway between its landmarks and off its sections.
+    """Measure a net against its blade, at three places between landmarks and off its sections.
 
     The end sections' rims are measured too, and the strip between the trailing edges.
     """
     starts, widths = net.v[:-1], np.diff(net.v)
     v = np.sort(np.concatenate([starts + widths / 3.0, starts + 0.75 * widths, net.v[[0, -1]]]))
-    u = np.concatenate([[0.0], 0.5 * (net.u[1:] + net.u[:-1]), [1.0]])
+    u = np.concatenate([[0.0], *(net.u[:-1] + share * np.diff(net.u) for share in BETWEEN), [1.0]])
+    u = np.sort(u)
     points = blade.sections(v, u)
     offsets = np.abs(net.offsets(points, u, v))
     eta, places = np.broadcast_arrays(v[:, None], u)

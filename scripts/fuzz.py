@@ -14,7 +14,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from fuzzing import TARGETS, Tally, fuzz, trial  # noqa: E402
+import foreign_fuzzing  # noqa: E402
+import fuzzing  # noqa: E402
+from fuzzing import Tally, fuzz, trial  # noqa: E402
+
+TARGETS = fuzzing.TARGETS + foreign_fuzzing.TARGETS
 
 
 def main() -> int:

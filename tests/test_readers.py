@@ -681,7 +681,7 @@ BAD_SHAPES: list[tuple[str, list[tuple[str, Any]], list[str]]] = [
     (
         "starts at the leading edge",
         [("airfoils[0].coordinates", {"x": [0.0, 1.0, 0.5], "y": [0.0, 0.0, -0.1]})],
-        ["airfoils[0].coordinates: runs from x = 0 to x = 0.5, must start and end at the trail"],
+        ["airfoils[0].coordinates: does not run from trailing edge to trailing edge"],
     ),
     (
         "flat",

@@ -18,7 +18,7 @@ import numpy as np
 from bladegen import affine, grassmann, polygons
 from bladegen.arrays import Array, ArrayLike, Indices, readonly
 from bladegen.blade import Blade
-from bladegen.chord_lines import KEPT, ChordLines, Motions
+from bladegen.chord_lines import KEPT, ChordLines, Motions, angles
 from bladegen.crossing import crossing_sections
 from bladegen.deformation import AffineChange, Window, faded
 from bladegen.domain import Domain
@@ -228,6 +228,8 @@ class SectionBatch:
                 if measured:
                     scale = chord[i, :, None, None]
                     measures[i] = polygons.measure(profiles[i, ..., :2] * scale)
+        if measured:
+            twist = twist + self._turned(sections, to_space)
         return Batch(
             sections,
             chord,
@@ -237,6 +239,16 @@ class SectionBatch:
             looks,
             measures if measured else None,
         )
+
+    def _turned(self, sections: Array, to_space: Array) -> Array:
+        """Return how far chord lines of sections (b, k, n, 3) turn from the baseline's, (b, k)."""
+        plain, _, M, b = self._shapes
+        before = angles(affine.restore(plain, M, b))
+        result = np.empty(sections.shape[:2])
+        for i, (section, axes) in enumerate(zip(sections, to_space, strict=True)):
+            local = (section - axes[:, None, 2]) @ axes[:, :2].mT  # chords squared
+            result[i] = angles(local) - before
+        return result
 
     def faults(self, t: Array, change: AffineChange) -> tuple[Indices, Array]:
         """Return what is wrong with the sections of variants, and their relative thickness.

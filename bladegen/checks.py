@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen import affine, foreign, inflections, polygons, properties, smoothness
+from bladegen import affine, foreign, inflections, polygons, properties, smoothness, spanwise
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 from bladegen.chord_lines import ChordLines
@@ -97,7 +97,7 @@ def check_blade(blade: Blade) -> Check:
         "volume_m3": properties.volume(blade),
         "stations_missed_by_chord": float(_missed(blade).max()),
         "chord_error_relative": float(np.abs(curves.chord - 1.0).max()),
-        "twist_error_deg": float(np.degrees(np.abs(_twist_error(blade, eta, profiles)).max())),
+        "twist_error_deg": float(np.degrees(np.abs(_twist_error(blade, eta)).max())),
         "thickness_error": None
         if thickness is None
         else float(np.abs(built.relative_thickness - thickness).max()),
@@ -199,15 +199,9 @@ def _missed(blade: Blade) -> Array:
     return missed
 
 
-def _twist_error(blade: Blade, eta: Array, profiles: Array) -> Array:
-    """Return the turn of placed sections in their planes, less the definition's twist [rad]."""
-    placed = blade.planform.place(profiles, eta) - blade.axis(eta)[:, None]
-    flat = placed @ blade.planform.frames(eta)[:, :2].mT
-    along = flat[..., ::-1] - flat[..., ::-1].mean(axis=1, keepdims=True)
-    own = profiles - profiles.mean(axis=1, keepdims=True)
-    turn = own.mT @ along
-    angle = np.arctan2(turn[:, 0, 1] - turn[:, 1, 0], turn[:, 0, 0] + turn[:, 1, 1])
-    error: Array = angle - blade.twist(eta)
+def _twist_error(blade: Blade, eta: Array) -> Array:
+    """Return the twist of the sections that are written, less the definition's [rad]."""
+    error: Array = spanwise.built(blade, eta)[1] - blade.twist(eta)
     return error
 
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from bladegen import polygons
+from bladegen import affine, polygons
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 
-__all__ = ["UNITS", "spanwise", "write_csv"]
+__all__ = ["UNITS", "built", "spanwise", "write_csv"]
 
 UNITS = {
     "area": "m2",
@@ -37,6 +37,7 @@ def spanwise(blade: Blade, eta: Array) -> dict[str, Array]:
     chord = blade.chord(eta)
     profiles = blade.trailing_edge(blade.profiles(eta), chord)
     axis = blade.axis(eta)
+    measured_chord, twist = built(blade, eta)
     measured = polygons.measure(profiles * chord[:, None, None])
     upper, lower = sides(profiles, LINES)
     thickness, camber = upper - lower, 0.5 * (upper + lower)
@@ -48,8 +49,8 @@ def spanwise(blade: Blade, eta: Array) -> dict[str, Array]:
         "x_m": axis[:, 0],
         "y_m": axis[:, 1],
         "z_m": axis[:, 2],
-        "chord_m": chord,
-        "twist_deg": np.degrees(blade.twist(eta)),
+        "chord_m": measured_chord,
+        "twist_deg": np.degrees(twist),
         "relative_thickness": blade.relative_thickness(eta),
         "thickest_at_chord": LINES[thickest],
         "camber_chord": camber[row, bent],
@@ -60,6 +61,22 @@ def spanwise(blade: Blade, eta: Array) -> dict[str, Array]:
             for name, values in zip(polygons.MEASURES, measured.T, strict=True)
         },
     }
+
+
+def built(blade: Blade, eta: Array) -> tuple[Array, Array]:
+    """Return chord [m] and twist [rad], (k,) each, of the sections that are written.
+
+    Both are measured on the finished points in space: the line from the point farthest from the
+    middle of the trailing edge to that middle, in the section's plane, less the angle that the
+    airfoil's own chord line has in the definition, before any change of shape.
+    """
+    placed = blade.sections(eta) - blade.axis(eta)[:, None]
+    flat = (placed @ blade.planform.frames(eta)[:, :2].mT)[..., ::-1]
+    plain, _, M, b = blade.shapes(eta)
+    curves = [blade.splines.fit(points) for points in (flat, affine.restore(plain, M, b))]
+    lines = [curve.trailing_edge - curve.leading_edge for curve in curves]
+    own, given = (np.arctan2(line[:, 1], line[:, 0]) for line in lines)
+    return curves[0].chord, own - given
 
 
 def sides(profiles: Array, x: Array) -> tuple[Array, Array]:

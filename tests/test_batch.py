@@ -217,3 +217,12 @@ def test_looks_and_domain_are_those_of_perturbed_blades(name):
         deformation = variant.deformations[-1]
         assert bool(left.any()) == bool(made.domain.said(deformation.step(SPANS)))
     assert not made.oddities(made._looks_before).kinds.any()
+
+
+def test_the_twist_of_a_batch_is_measured_on_its_sections():
+    made, t = batch_of("dtu10mw"), drawn(13, 3, 0.4)
+    kept = made.evaluate(t, AffineChange(), measured=True)
+    assert_allclose(kept.twist, np.broadcast_to(made.blade.twist(SPANS), (3, 37)), atol=1e-3)
+    paper = SectionBatch(made.blade, space(), made.window, SPANS, "paper")
+    turned = paper.evaluate(t, AffineChange(), measured=True).twist
+    assert np.degrees(np.abs(turned - made.blade.twist(SPANS)).max()) > 0.3

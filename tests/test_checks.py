@@ -160,3 +160,14 @@ def test_what_cannot_be_checked_is_refused(tmp_path):
 def test_a_held_twist_is_no_error(blade):
     turned = replace(blade.definition, twist=Distribution.constant(1.0))
     assert checks.check_blade(replace(blade, definition=turned)).figures["twist_error_deg"] < 1e-9
+
+
+def test_the_twist_is_measured_on_the_points_that_are_written():
+    blade = bg.Blade.from_definition(bg.read("dtu10mw"))
+    t, space = [0.05, -0.04, 0.03, 0.02], bg.ShapeSpace.bundled()
+    spans = np.linspace(0.0, 1.0, 41)
+    assert np.degrees(np.abs(checks._twist_error(blade, spans)).max()) < 1e-9
+    kept = blade.perturbed(space, t, twist=0.02)
+    assert np.degrees(np.abs(checks._twist_error(kept, spans)).max()) < 0.02  # at two noses
+    paper = blade.perturbed(space, t, twist=0.02, chord_line="paper")
+    assert np.degrees(np.abs(checks._twist_error(paper, spans)).max()) > 0.3

@@ -1,0 +1,71 @@
+"""Sanity: how far changes of shape turn chord lines, and how many draws of families are taken.
+
+    python benchmarks/sanity.py [--count N]
+
+Chord lines: 12 random t within twice the standard deviation a blade that are sound, spans 0.2 to
+0.98, as the paper's formula leaves them and as they are kept.  Families: ellipsoid, seed 0.
+"""
+
+import argparse
+
+import numpy as np
+from figures import figure
+
+import bladegen as bg
+from bladegen.chord_lines import ChordLines
+from bladegen.deformation import AffineChange
+from bladegen.errors import PerturbationError
+
+SPANS = np.linspace(0.2, 0.98, 79)
+DRAWS = 12
+
+
+def lines(blade):
+    """Return chord-line angles [deg] and noses."""
+    found = ChordLines.of(blade.splines.fit(blade.profiles(SPANS)))
+    along = found.edge - found.nose
+    return np.degrees(np.arctan2(along[:, 1], along[:, 0])), found.nose
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--count", type=int, default=40)
+    count = parser.parse_args().count
+    space = bg.ShapeSpace.bundled()
+    spread = np.sqrt(space.variances[: space.dimension])
+    for name in bg.bundled():
+        blade = bg.Blade.from_definition(bg.read(name))
+        angle, nose = lines(blade)
+        turned = {"paper": [], "kept": []}
+        moved = {"paper": [], "kept": []}
+        rng = np.random.default_rng(0)
+        while len(turned["kept"]) < DRAWS:
+            t = rng.uniform(-2.0, 2.0, space.dimension) * spread
+            if space.outside(t):
+                continue
+            try:
+                for rule in ("paper", "kept"):
+                    asked = {"chord_line": rule, "allow_extrapolation": True}
+                    variant = blade.untested(space, t, AffineChange(), **asked)
+                    if rule == "paper":
+                        variant.require_sound(allow_odd=True)
+                    other, there = lines(variant)
+                    turned[rule].append(np.abs(other - angle).max())
+                    moved[rule].append(np.linalg.norm(there - nose, axis=1).max())
+            except PerturbationError:
+                continue
+        beside = {"beside": "the paper's formula"}
+        most = [max(turned[rule]) for rule in ("kept", "paper")]
+        figure("chord line turned, at most", name, most[0], "deg", baseline=most[1], **beside)
+        most = [max(moved[rule]) for rule in ("kept", "paper")]
+        figure("nose moved, at most", name, most[0], "chord", baseline=most[1], **beside)
+        for reach in (1.0, 0.5, 0.25):
+            block = bg.family(blade, space, count=count, seed=0, reach=reach).block(
+                np.arange(count)
+            )
+            draws = float(block.attempts.mean())
+            figure(f"draws a variant, reach {reach:g}", name, draws, "")
+
+
+if __name__ == "__main__":
+    main()

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 __all__ = ["TOLERANCE", "missed", "redefined", "sampled"]
 
 TOLERANCE = 5e-4  # m: between stations, from the sections of the blade to those of the definition
+MARGIN = 0.8  # of the tolerance, at the places that are looked at; others are a little farther
+LEAST_STEP = 5e-4  # of the span, between stations: nearer airfoils are one airfoil twice, all but
 SHARE = 0.1  # of the tolerance, for each distribution
 MOST_STATIONS = 400
 MOST_POINTS = 2_000  # of a distribution's grid
@@ -68,16 +70,31 @@ def redefined(blade: "Blade", *, tolerance: float = TOLERANCE) -> BladeDefinitio
     while True:
         definition = replace(draft, stations=shapes.stations(eta))
         off = shapes.missed(definition, eta)
-        wide = (off > tolerance) & (np.diff(eta) > CLOSEST)
+        wide = (off > MARGIN * tolerance) & (np.diff(eta) > 2.0 * LEAST_STEP)
         if not wide.any() or len(eta) + np.count_nonzero(wide) > MOST_STATIONS:
             break
         eta = united(eta, (0.5 * (eta[:-1] + eta[1:]))[wide])
     definition = shapes.moved(definition, eta, SHARE * tolerance)
     said = (
         f"{len(eta)} stations, {len(eta) - len(blade.eta)} of them between those of the "
-        f"baseline; sections between stations within {1e3 * off.max():.2g} mm"
+        f"baseline; {_left(off, eta, tolerance)}"
     )
     return replace(definition, findings=(*definition.findings, Finding("perturbed airfoils", said)))
+
+
+def _left(off: Array, eta: Array, tolerance: float) -> str:
+    """Say how far sections between stations are off, and where by more than the tolerance."""
+    over = off > tolerance
+    if not over.any():
+        return f"sections between stations within {1e3 * off.max():.2g} mm"
+    width, k = np.diff(eta), int(np.argmax(off))
+    kept = f"within {1e3 * tolerance:.2g} mm" + (
+        f" (at most {1e3 * off[~over].max():.2g})" if not over.all() else ""
+    )
+    return (
+        f"sections between stations {kept} but over {100 * width[over].sum():.2g} % of the span, "
+        f"where they are up to {1e3 * off[k]:.2g} mm off (eta = {eta[k]:.4f} to {eta[k + 1]:.4f})"
+    )
 
 
 def sampled(quantity: Callable[[Array], Array], grid: Array, tolerance: float) -> Distribution:

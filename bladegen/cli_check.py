@@ -89,8 +89,8 @@ def _compare(
     with progress_bar() as progress:
         progress("reading")
         things = [blade_of(name, airfoils) or Path(name) for name in (file, other)]
-        things, differing = alike(things)
-        one, two = (surface_of(thing) for thing in things)
+        things, tips, differing = alike(things)
+        one, two = (surface_of(*pair) for pair in zip(things, tips, strict=True))
         progress("measuring distances")
         found = compared(one, two)
         if screenshot is not None:
@@ -103,6 +103,9 @@ def _compare(
         return
     for note in (*found.notes, *differing):  # first: all that follows rests on it
         typer.echo(f"note: {note}")
+    for thing in things:
+        if not isinstance(thing, Path):
+            print_findings([str(finding) for finding in thing.findings])
     print_figures(f"{file} against {other}", found.figures)
     rows = [
         [

@@ -258,21 +258,20 @@ class Producing:
         from bladegen.exporters import Options
         from bladegen.grid import Spacing
         from bladegen.texts import metres
-        from bladegen.tips import Tip, flat_tip, round_tip
+        from bladegen.tips import TIPS
 
         if self.light and self.tolerance is not None:
             raise BladegenError(
                 f"--tolerance: got {self.tolerance}, but --light takes {LIGHT}; leave one out"
             )
         tolerance = LIGHT if self.light else self.tolerance or TOLERANCE
-        tips: dict[str, Tip] = {"flat": flat_tip, "round": round_tip}
         return Options(
             tolerance=metres(tolerance, "tolerance"),
             largest=LIGHT_BYTES if self.light else None,
             command=_COMMAND.get(),
             step_schema=self.step,
             stations=self.stations,
-            tip=tips[self.tip],
+            tip=TIPS[self.tip],
             unit=self.unit,
             polars=self.polars,
             reynolds=self.reynolds,

@@ -23,6 +23,7 @@ from bladegen.preview.renderer import image_of
 from bladegen.preview.scene import MILLIMETRES, Field, Layer, Scene
 from bladegen.style import INK, STATION
 from bladegen.surfaces import Surface
+from bladegen.tips import Tip, flat_tip
 
 __all__ = ["Comparison", "Side", "compared", "draw", "scene", "surface_of"]
 
@@ -115,8 +116,8 @@ class Comparison:
         return rows
 
 
-def surface_of(source: Path | Blade) -> Side:
-    """Return the surface of a file or a blade.
+def surface_of(source: Path | Blade, tip: Tip = flat_tip) -> Side:
+    """Return the surface of a file, or of a blade with a tip.
 
     Raises
     ------
@@ -125,7 +126,7 @@ def surface_of(source: Path | Blade) -> Side:
     """
     if isinstance(source, Blade):
         name = Path(source.definition.source).name or source.name
-        return Side(f"the definition {name}", surfaces.of_blade(source), defined=True)
+        return Side(f"the definition {name}", surfaces.of_blade(source, tip), defined=True)
     answer = foreign.ask("surface", source)
     numbers = [values for values in answer.arrays.values() if values.dtype.kind == "f"]
     weights = [values for name, values in answer.arrays.items() if name.endswith("/weights")]

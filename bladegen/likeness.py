@@ -12,18 +12,18 @@ from bladegen.blade import PATHS, Blade
 from bladegen.errors import BladegenError
 from bladegen.inventory import made_by
 from bladegen.planform import normal_to_axis, normal_to_z
-from bladegen.provenance import Provenance, blade_settings, content_of, made_from
+from bladegen.provenance import Provenance, blade_settings, content_of, made_from, word
 from bladegen.texts import chord_share, finish
+from bladegen.tips import TIPS, Tip, flat_tip
 
 __all__ = ["alike"]
 
 PLANES = {"axis": normal_to_axis, "z": normal_to_z}
 DIFFERENT = ("command", "unit", "schema", "tolerance mm", "stations")  # no other shape
-SURFACE = {"tip": "flat"}  # of a blade that is compared
 
 
-def alike(things: Sequence[Blade | Path]) -> tuple[list[Blade | Path], list[str]]:
-    """Return two things to compare, blades made as the other one was, and what is to be said.
+def alike(things: Sequence[Blade | Path]) -> tuple[list[Blade | Path], list[Tip], list[str]]:
+    """Return two things to compare, blades made as the other one was, their tips, and what to say.
 
     Parameters
     ----------
@@ -32,17 +32,23 @@ def alike(things: Sequence[Blade | Path]) -> tuple[list[Blade | Path], list[str]
     """
     made = [None if isinstance(thing, Blade) else made_by(thing) for thing in things]
     names = [thing.name for thing in things]
-    taken, said = list(things), []
+    taken: list[Blade | Path] = list(things)
+    tips: list[Tip] = [flat_tip, flat_tip]
+    said = []
     for k, other in ((0, 1), (1, 0)):
         thing, told = things[k], made[other]
         if isinstance(thing, Blade):
             if told is not None and told.definition == content_of(thing.definition):
                 taken[k] = remade = _remade(thing, told)
+                tip = dict(told.settings).get("tip", "flat")
+                tips[k] = TIPS.get(tip, flat_tip)
                 changed = _changed(thing, remade)
+                if tips[k] is not flat_tip:
+                    changed = f"{changed}, tip {tip}" if changed else f"tip {tip}"
                 if changed:
                     said.append(f"{names[k]} is taken as {names[other]} was made: {changed}")
                 thing = remade
-            made[k] = made_from(thing, SURFACE)
+            made[k] = made_from(thing, {"tip": word(tips[k])})
     one, two = made
     if one is not None and two is not None:
         said += [
@@ -50,7 +56,7 @@ def alike(things: Sequence[Blade | Path]) -> tuple[list[Blade | Path], list[str]
             for what, a, b in one.differences(two)
             if what not in DIFFERENT
         ]
-    return taken, said
+    return taken, tips, said
 
 
 def _remade(blade: Blade, told: Provenance) -> Blade:

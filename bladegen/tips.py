@@ -12,7 +12,7 @@ import numpy as np
 from bladegen.arrays import Array
 from bladegen.blade import Blade
 
-__all__ = ["Tip", "arcs", "flat_tip", "on_arcs", "round_tip"]
+__all__ = ["TIPS", "Tip", "arcs", "flat_tip", "on_arcs", "round_tip"]
 
 STEP = 1e-4  # of the span: sides' directions by differences are then good to 1e-6 and better
 
@@ -46,6 +46,9 @@ def round_tip(suction: Array, pressure: Array, along: Array, opposite: Array) ->
     lifted = suction + reach * along / np.linalg.norm(along, axis=-1, keepdims=True)
     opposed = pressure + reach * opposite / np.linalg.norm(opposite, axis=-1, keepdims=True)
     return np.stack([suction, lifted, opposed, pressure], axis=-2)
+
+
+TIPS: dict[str, Tip] = {"flat": flat_tip, "round": round_tip}  # as the command line calls them
 
 
 def arcs(blade: Blade, tip: Tip, u: Array | None = None) -> Array | None:

@@ -7,7 +7,7 @@ import pytest
 import bladegen as bg
 from bladegen.edges import MinimumThickness
 from bladegen.likeness import alike
-from bladegen.tips import round_tip
+from bladegen.tips import flat_tip, round_tip
 
 
 @pytest.fixture(scope="module")
@@ -27,35 +27,34 @@ def folder(blade, tmp_path_factory):
 
 
 def test_a_blade_is_made_as_the_file_was(blade, folder):
-    (one, two), said = alike([folder / "thick.ply", blade])
+    (one, two), tips, said = alike([folder / "thick.ply", blade])
     assert one == folder / "thick.ply"
     assert str(two.trailing_edge) == "20mm"
     assert two.mirrored
     assert len(two.u) == 51
-    assert said == [
-        "nrel5mw is taken as thick.ply was made: trailing edge 20mm, mirrored yes",
-        "tip: round in thick.ply, flat in nrel5mw",
-    ]
+    assert tips == [flat_tip, round_tip]
+    told = "nrel5mw is taken as thick.ply was made: trailing edge 20mm, mirrored yes, tip round"
+    assert said == [told]
 
 
 def test_what_was_made_alike_is_not_told(blade, folder):
-    (one, _), said = alike([blade, folder / "plain.obj"])
+    (one, _), _, said = alike([blade, folder / "plain.obj"])
     assert said == []
     assert (one.sections([0.5]) == blade.sections([0.5])).all()
 
 
 def test_files_are_held_against_each_other(blade, folder):
-    said = alike([folder / "plain.obj", folder / "thick.ply"])[1]
+    said = alike([folder / "plain.obj", folder / "thick.ply"])[2]
     assert sorted(said) == [
         "mirrored: none in plain.obj, yes in thick.ply",
         "tip: flat in plain.obj, round in thick.ply",
         "trailing edge: 2mm,1% in plain.obj, 20mm in thick.ply",
     ]
-    said = alike([folder / "wide.ply", blade])[1]
+    said = alike([folder / "wide.ply", blade])[2]
     assert "change1.chord: 1.1 in wide.ply, none in nrel5mw" in said
 
 
 def test_foreign_files_are_taken_as_they_are(blade, folder):
     things = [folder / "foreign.stl", blade]
-    assert alike(things) == (things, [])
-    assert alike([Path("none.step"), folder / "plain.obj"])[1] == []
+    assert alike(things) == (things, [flat_tip, flat_tip], [])
+    assert alike([Path("none.step"), folder / "plain.obj"])[2] == []

@@ -12,7 +12,7 @@ from typing import Any
 __all__ = ["Visits"]
 
 MOST = 16  # that wait; a browser that restores its tabs opens several at once
-PATIENCE = 30.0  # s; slow machines and networks take some
+PATIENCE = 120.0  # s; slow machines and networks take a minute
 
 
 class Visits:

@@ -141,7 +141,7 @@ def test_unknown_suffixes_are_refused(blade, name, tmp_path):
     [
         ({"unit": "inch"}, "unit: got 'inch', allowed are m, mm"),
         ({"tolerance": 0.0}, "tolerance: got 0 m"),
-        ({"tolerance": float("nan")}, "tolerance: got nan m"),
+        ({"tolerance": float("nan")}, "tolerance: got nan, must be finite"),
     ],
 )
 def test_wrong_options_are_refused(blade, option, message, tmp_path):

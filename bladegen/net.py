@@ -36,7 +36,7 @@ MENDINGS = 6  # single sections that may be added where the final measurement is
 MAXIMUM_SHARE = 0.5  # of the tolerance may be spent between sections at most
 RMS_SHARE = 0.08  # and in the mean; the rest is left to what lies between landmarks
 CLOSED_EDGE = 1e-7  # m; a trailing edge thinner than this everywhere is sharp
-BETWEEN = (0.25, 0.5, 0.75)  # of the way between landmarks, where a net is measured
+BETWEEN = np.array([0.25, 0.5, 0.75])  # of the way between landmarks, where a net is measured
 COARSE = (4, 2, 1)  # strides through the blade's landmarks to begin with
 BETWEEN_SHARE = 0.6  # of the tolerance, between landmarks: where more is missed, some are added
 
@@ -289,18 +289,20 @@ def resolving_landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
         at = np.searchsorted(blade.u, u)
         between = np.clip((at[1:] + at[:-1]) // 2, 0, len(blade.u) - 1)
         own = (np.diff(at) > 1) & (blade.u[at[:-1]] == u[:-1]) & (blade.u[at[1:]] == u[1:])
-        middles = np.where(own, blade.u[between], 0.5 * (u[1:] + u[:-1]))
-        middles[len(middles) // 2 :] = 1.0 - middles[: len(middles) // 2][::-1]
+        # where it is measured in the end, but for the middle: there the blade's own come first
+        places = u[:-1, None] + BETWEEN * np.diff(u)[:, None]
+        places[own, len(BETWEEN) // 2] = blade.u[between[own]]
+        places[len(places) // 2 :] = 1.0 - places[: len(places) // 2][::-1, ::-1]
         spline = CubicSpline(u, _sections(blade, v, u), axis=1)
-        missed = blade.sections(v, middles) - spline(middles)
-        along = spline(middles, 1)
+        missed = blade.sections(v, places.ravel()) - spline(places.ravel())
+        along = spline(places.ravel(), 1)
         along /= np.linalg.norm(along, axis=-1, keepdims=True)
         missed = np.linalg.norm(np.cross(missed, along), axis=-1)
-        split = missed.max(axis=0) > BETWEEN_SHARE * tolerance
+        split = missed.reshape(-1, *places.shape).max(axis=(0, 2)) > BETWEEN_SHARE * tolerance
         split |= split[::-1]
         if not split.any():
             break
-        u = np.sort(np.concatenate([u, middles[split]]))
+        u = np.sort(np.concatenate([u, places[split, len(BETWEEN) // 2]]))
     return u
 
 

@@ -184,7 +184,6 @@ def test_a_base_whose_middle_is_listed_once_is_closed():
     assert_array_equal(read.points[[0, -1]], [[1.0, 0.0], [1.0, 0.0]])
 
 
-@pytest.mark.parametrize("end", [0.95, 0.999])
 def test_a_thick_edge_of_coarse_points_is_open_without_a_word():
     """As FX 77-W-500 in the IEA 3.4 MW: steep sides, both ends at x = 1, no two points alike."""
     foil = naca(0.5, 0.0, 0.025, 34)

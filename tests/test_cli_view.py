@@ -91,7 +91,7 @@ def test_preview_compares_two(tmp_path, monkeypatch):
     png, html = tmp_path / "a.png", tmp_path / "a.html"
     result = run("preview", "--compare", one, other, "--screenshot", png, "--html", html)
     assert result.exit_code == 0, result.output
-    assert "note: the second file is taken to be in millimetres" in result.output
+    assert "names no unit and is taken to be in millimetres" in result.output
     assert "distance from the other, mm" in html.read_text(encoding="utf-8")
     image = np.asarray(Image.open(png).convert("RGB")).astype(int)
     assert np.count_nonzero(np.abs(image[..., 0] - image[..., 1]) > 40) > 1000

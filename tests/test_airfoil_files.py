@@ -194,16 +194,17 @@ def test_a_thick_edge_of_coarse_points_is_open_without_a_word():
     assert "apart" not in "; ".join(read.said)
 
 
-@pytest.mark.parametrize("turned", [0.0, 0.02, 0.3])
-def test_ends_in_doubt_are_open_and_said(turned):
-    """A circle whose points are symmetric about neither end nor the gap."""
+@pytest.mark.parametrize(("turned", "level"), [(0.0, False), (0.025, True), (0.3, False)])
+def test_ends_in_doubt_are_open_and_said(turned, level):
+    """A circle with points symmetric about neither end nor the gap; ends at one x are plain."""
     angle = np.concatenate([[0.0], np.linspace(0.12, 2 * np.pi - 0.05, 60)]) + turned
     foil = np.stack([0.5 + 0.5 * np.cos(angle), 0.5 * np.sin(angle)], axis=1)
     taken = ends(foil)
     assert not taken.closed
-    assert (taken.said is None) == (turned == 0.0)
+    assert (taken.said is None) == level
 
 
+@pytest.mark.parametrize("end", [0.95, 0.999])
 def test_a_contour_that_ends_early_is_said_with_both_figures(end):
     x = SHARP[:, 0]
     cut = SHARP[x <= end]

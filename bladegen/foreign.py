@@ -111,9 +111,7 @@ def ask(what: str, path: Path) -> Answer:
         child.kill()
         code = child.wait()
     if sent is None:
-        raise FileError(
-            str(path), [f"was not read in {PATIENCE * seconds:.0f} s, so it is damaged"]
-        )
+        raise FileError(str(path), [_late(PATIENCE * seconds, "on the clock")])
     try:
         answer = unpacked(sent)
     except (ValueError, KeyError, OSError, EOFError, zipfile.BadZipFile):

@@ -75,7 +75,9 @@ def test_the_manifest_says_what_the_variants_are(reference):
         assert_allclose([table[f"t{j + 1}"][place] for j in range(4)], t, rtol=0, atol=1e-15)
         assert_allclose(table["volume_m3"][place], volume(variant), rtol=0.02)  # few sections
         assert_allclose(table["section_chord_m"][place], variant.chord(family.eta))
-        assert_allclose(table["section_twist_deg"][place], np.degrees(variant.twist(family.eta)))
+        assert_allclose(
+            table["section_twist_deg"][place], np.degrees(variant.twist(family.eta)), atol=0.005
+        )
 
 
 def test_sections_say_where_they_are(reference):
@@ -264,7 +266,7 @@ def test_two_runs_in_one_folder_are_refused(tmp_path):
 
 
 def test_variants_that_fold_between_their_sections_are_listed_without_files(tmp_path, monkeypatch):
-    def folded(blade):
+    def folded(blade, **_):
         if blade.name.endswith("1"):
             raise PerturbationError(f"{blade.name}: the section at eta = 0.5 crosses itself")
         return blade
@@ -305,7 +307,7 @@ def test_marked_variants_have_no_files(tmp_path):
     table = pq.read_table(tmp_path / "manifest.parquet").to_pydict()
     assert table["valid"] == [False, False]
     assert table["stl_file"] == ["", ""]
-    assert "t1" not in table["reason"][0]
+    assert "arrives at t1 = " in table["reason"][0]
     assert table["reason"][0]
 
 

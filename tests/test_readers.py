@@ -802,13 +802,17 @@ def test_size_and_number_of_values_are_bounded(path, monkeypatch):
     assert "is larger than 1 MB" in str(refusal(b" " * 2**21, path))
 
 
-@pytest.mark.parametrize(
-    "name", ["iea16mw", "", ".", "../blades/iea15mw", "/dev/null", "x" * 5000, "a\0b"]
-)
+@pytest.mark.parametrize("name", ["iea16mw", "../blades/iea15mw", "/dev/null", "x" * 5000, "a\0b"])
 def test_what_is_neither_blade_nor_file_is_answered_with_the_bundled_names(name):
     with pytest.raises(FileError, match="bundled blades are dtu10mw, iea15mw, nrel5mw") as raised:
         readers.read(name)
     assert raised.value.source == name
+
+
+@pytest.mark.parametrize(("name", "words"), [("", "name of a bundled blade"), (".", "is a folder")])
+def test_no_name_and_a_folder_are_answered_with_what_to_give(name, words):
+    with pytest.raises(FileError, match=words):
+        readers.read(name)
 
 
 def test_other_suffixes_are_refused(tmp_path):

@@ -213,9 +213,10 @@ def read(path: Path) -> Any:
     import trimesh
 
     try:
-        with path.open("rb") as stream:
-            kind = path.suffix.lower().lstrip(".")
-            loaded = trimesh.load_mesh(stream, file_type=kind, resolver=None)
+        kind = path.suffix.lower().lstrip(".")
+        # a stream with a name leads trimesh to what lies beside
+        content = io.BytesIO(path.read_bytes())
+        loaded = trimesh.load_mesh(content, file_type=kind, resolver=None)
         vertices, faces = loaded.vertices, loaded.faces
     except Exception as error:  # trimesh's loaders raise whatever their parsers do
         text = f"{type(error).__name__} {error}"

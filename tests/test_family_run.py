@@ -75,9 +75,8 @@ def test_the_manifest_says_what_the_variants_are(reference):
         assert_allclose([table[f"t{j + 1}"][place] for j in range(4)], t, rtol=0, atol=1e-15)
         assert_allclose(table["volume_m3"][place], volume(variant), rtol=0.02)  # few sections
         assert_allclose(table["section_chord_m"][place], variant.chord(family.eta))
-        assert_allclose(
-            table["section_twist_deg"][place], np.degrees(variant.twist(family.eta)), atol=0.005
-        )
+        twist = np.degrees(variant.twist(family.eta))  # measured on the points that are written
+        assert_allclose(table["section_twist_deg"][place], twist, rtol=0, atol=0.02)
 
 
 def test_sections_say_where_they_are(reference):

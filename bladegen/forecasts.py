@@ -75,7 +75,7 @@ def size(count: float) -> str:
     """Return a number of bytes as people read it.
 
     >>> size(2_406_000_000_000)
-    '2.4 TB'
+    '2.41 TB'
     """
     for unit in UNITS[:-1]:
         if count < 999.5:

@@ -138,8 +138,13 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
             ],
             ["", f"{digits(deviation['rms'], 4)} mm RMS"],
             ["solid's volume", f"{digits(solid['volume_m3'], 4)} m3"],
-            ["of it in its tip", f"{digits(solid['tip_volume_m3'], 4)} m3"],
-            ["without its tip off by", f"{solid['volume_against_sections']:.1e}"],
+        ]
+        tip = solid["tip_volume_m3"]
+        if tip:
+            rows.append(["of it in its tip", f"{digits(tip, 4)} m3"])
+        off = f"{solid['volume_against_sections']:.1e}"
+        rows += [
+            ["without its tip off by" if tip else "off its sections' by", off],
             ["volume change on reading", f"{solid['volume_change_on_reading']:.1e}"],
         ]
     for suffix, figures_ in report.get("meshes", {}).items():

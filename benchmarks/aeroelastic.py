@@ -285,7 +285,7 @@ def child(python: str, name: str, argument: str) -> Any:
 
 def held(definition: Any) -> dict[str, Any]:
     """Return the blade at `SPANS` as the definition has it."""
-    from bladegen.blending import between
+    from bladegen.definition.blending import between
 
     found = [between(definition, float(eta)).polars()[0] for eta in SPANS]
     z = definition.axis.z(SPANS) - definition.axis.z(0.0)
@@ -359,7 +359,7 @@ def main() -> None:
         print(json.dumps(CHILDREN[asked.child](sys.stdin.read())))
         return
     import bladegen as bg
-    from bladegen.writers import prepared
+    from bladegen.formats.writing import prepared
 
     source = asked.blade
     if source is None:

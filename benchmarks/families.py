@@ -26,10 +26,11 @@ from figures import figure, parser
 from threadpoolctl import threadpool_limits
 
 import bladegen as bg
-from bladegen import exporters, net
 from bladegen.errors import ToleranceError
-from bladegen.families import BLOCK
-from bladegen.family_run import Order, run
+from bladegen.exports import exporters
+from bladegen.families.family import BLOCK
+from bladegen.families.run import Order, run
+from bladegen.surface import net
 
 THREADS = 2
 RUNS = 7

@@ -15,8 +15,8 @@ import numpy as np
 from figures import asked, figure, seconds
 
 import bladegen as bg
-from bladegen.arrays import Array
-from bladegen.definition import BladeDefinition, Distribution
+from bladegen.definition.blade_definition import BladeDefinition, Distribution
+from bladegen.support.arrays import Array
 
 FILES = ("blade.csv", "blade.xlsx", "blade.htc", "blade.dat", "blade.yaml")
 RUNS = 5

@@ -15,12 +15,12 @@ import numpy as np
 from figures import asked, figure
 
 import bladegen as bg
-from bladegen import cad
-from bladegen.mesh import TriangleMesh
-from bladegen.tips import flat_tip, round_tip
+from bladegen.cad import solids
+from bladegen.surface.mesh import TriangleMesh
+from bladegen.surface.tips import flat_tip, round_tip
 
 SIZES = 500.0, 100.0  # mm
-FILES = {"default": cad.DEFAULT_TOLERANCE, "light": 1e-3}
+FILES = {"default": solids.DEFAULT_TOLERANCE, "light": 1e-3}
 
 
 def main() -> None:
@@ -32,14 +32,14 @@ def main() -> None:
             for tip in (flat_tip, round_tip):
                 for label, tolerance in FILES.items():
                     path = Path(folder) / "blade.step"
-                    solid = cad.solid(blade, tolerance=tolerance, tip=tip)
+                    solid = solids.solid(blade, tolerance=tolerance, tip=tip)
                     bg.export(blade, path, tolerance=tolerance, tip=tip)
                     for size in SIZES[: 1 if quick else None]:
                         case = f"{name}, {label}, {tip.__name__[:-4]} tip, {size:g} mm"
                         measure(case, path, size, solid)
 
 
-def measure(case: str, path: Path, size: float, solid: cad.Solid) -> None:
+def measure(case: str, path: Path, size: float, solid: solids.Solid) -> None:
     """Mesh a file's surface and print how that went."""
     gmsh.initialize(interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
@@ -59,7 +59,7 @@ def measure(case: str, path: Path, size: float, solid: cad.Solid) -> None:
         faces.append(place[nodes.astype(int)].reshape(-1, 3))
         worst.append(float(np.min(gmsh.model.mesh.getElementQualities(elements, "gamma"))))
     gmsh.finalize()
-    made = TriangleMesh(points.reshape(-1, 3) / cad.MILLIMETRES, np.concatenate(faces))
+    made = TriangleMesh(points.reshape(-1, 3) / solids.MILLIMETRES, np.concatenate(faces))
     edges = np.sort(np.concatenate([made.faces[:, [i, (i + 1) % 3]] for i in range(3)]))
     _, times = np.unique(edges, axis=0, return_counts=True)
     for what, value, unit in (

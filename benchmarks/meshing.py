@@ -20,13 +20,16 @@ import numpy as np
 from figures import asked, figure, seconds
 
 import bladegen as bg
-from bladegen import cad, exporters, grid, mesh, properties
+from bladegen.cad import solids
+from bladegen.exports import exporters
+from bladegen.measures import properties
+from bladegen.surface import grid, mesh
 
 RUNS = 3
 STATIONS = (50, 100, 300, 900)
 DISTANCES = (3.0, 1.0, 0.3)  # mm
 ANGLE = 0.5  # rad, BRepMesh's own default
-SOLID, SMALL = cad.DEFAULT_TOLERANCE, 3e-3  # m
+SOLID, SMALL = solids.DEFAULT_TOLERANCE, 3e-3  # m
 SPANS, PLACES = 60, 16  # of the points that are measured
 
 
@@ -36,7 +39,7 @@ def gridded(blade: bg.Blade, stations: int, path: Path) -> None:
     exporters.write(exporters.Products(replace(blade), options), path)
 
 
-def tessellated(solid: cad.Solid, distance: float, path: Path) -> None:
+def tessellated(solid: solids.Solid, distance: float, path: Path) -> None:
     """Write OCCT's."""
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.BRepTools import BRepTools
@@ -73,7 +76,7 @@ def main() -> None:
     quick = asked(__doc__).quick
     for name in bg.bundled()[: 1 if quick else None]:
         blade = bg.Blade.from_definition(bg.read(name))
-        solid = cad.solid(blade, tolerance=SMALL if quick else SOLID)
+        solid = solids.solid(blade, tolerance=SMALL if quick else SOLID)
         with tempfile.TemporaryDirectory() as folder:
             calls: dict[str, Callable[[], None]] = {}
             paths: dict[str, tuple[Path, float]] = {}

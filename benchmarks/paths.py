@@ -14,10 +14,10 @@ from figures import asked, figure
 from scipy.interpolate import PchipInterpolator, interp1d
 
 import bladegen as bg
-from bladegen import affine
-from bladegen.blade import PATHS
-from bladegen.interpolation import Parameter, SectionSpline
-from bladegen.smoothness import creases
+from bladegen.blade.blade import PATHS
+from bladegen.blade.paths import Parameter, SectionSpline
+from bladegen.measures.smoothness import creases
+from bladegen.shapes import affine
 
 WAYS = ("geodesic", "spline", "linear blend", "PCHIP blend")
 

@@ -10,7 +10,7 @@ import numpy as np
 from figures import asked, figure, seconds
 
 import bladegen as bg
-from bladegen.build import build
+from bladegen.exports.build import build
 
 SPANS = 100
 RUNS, BUILDS = 15, 3

@@ -12,8 +12,8 @@ from pathlib import Path
 import yaml
 from figures import asked, figure, seconds
 
-from bladegen.readers import bundled, read
-from bladegen.readers.yaml_file import load_yaml
+from bladegen.formats.reading import bundled, read
+from bladegen.formats.windio.yaml_file import load_yaml
 
 RUNS = 15
 ANGLES = 160  # angles of attack a polar: brings the file to about 250 kB

@@ -13,7 +13,7 @@ import numpy as np
 from figures import asked, figure
 
 import bladegen as bg
-from bladegen.arrays import Array
+from bladegen.support.arrays import Array
 
 SPANS = np.linspace(0.0, 1.0, 173)
 FINER = 4  # points of a polyline per landmark

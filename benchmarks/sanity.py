@@ -10,8 +10,8 @@ import numpy as np
 from figures import asked, figure
 
 import bladegen as bg
-from bladegen.chord_lines import ChordLines
-from bladegen.deformation import AffineChange
+from bladegen.airfoils.chord_lines import ChordLines
+from bladegen.blade.deformation import AffineChange
 from bladegen.errors import PerturbationError
 
 SPANS = np.linspace(0.2, 0.98, 79)

@@ -13,7 +13,7 @@ import numpy as np
 from figures import figure, parser, seconds, spread
 
 import bladegen as bg
-from bladegen import mesh
+from bladegen.surface import mesh
 
 LANDMARKS = (101, 201, 401, 801)
 SECTIONS = (50, 100, 200, 400, 800)

@@ -15,10 +15,11 @@ from pathlib import Path
 from figures import figure, parser
 
 import bladegen as bg
-from bladegen import cad, cad_files, combs
-from bladegen.blade import PATHS
-from bladegen.inflections import inflections
-from bladegen.smoothness import edge_bulges
+from bladegen.blade.blade import PATHS
+from bladegen.cad import exchange, solids
+from bladegen.measures.inflections import inflections
+from bladegen.measures.smoothness import edge_bulges
+from bladegen.views import combs
 
 TOLERANCES = (0.05e-3, 1e-3)
 UNITS = {"poles": "", "STEP": "MB", "largest deviation": "mm", "RMS deviation": "mm"}
@@ -26,10 +27,10 @@ UNITS = {"poles": "", "STEP": "MB", "largest deviation": "mm", "RMS deviation": 
 
 def solid(blade: bg.Blade, tolerance: float) -> list[float]:
     """Make a solid and its STEP file; return the figures of `UNITS`."""
-    made = cad.solid(blade, tolerance=tolerance)
+    made = solids.solid(blade, tolerance=tolerance)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "blade.step"
-        cad_files.write_step(made, path)
+        exchange.write_step(made, path)
         size = path.stat().st_size
     off = made.deviation
     return [made.net.poles.size / 3, size / 1e6, 1e3 * off.maximum, 1e3 * off.rms]

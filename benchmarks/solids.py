@@ -27,8 +27,8 @@ from figures import figure, parser
 from scipy.spatial import cKDTree
 
 import bladegen as bg
-from bladegen import cad, cad_files
-from bladegen.landmarks import landmark_parameters
+from bladegen.airfoils.landmarks import landmark_parameters
+from bladegen.cad import exchange, solids
 
 TOLERANCES = (3.0, 1.0, 0.3, 0.1, 0.05)  # mm
 SECTIONS = (20, 40, 80, 160)
@@ -78,8 +78,8 @@ def distance_mm(blade: bg.Blade, shape: Any) -> float:
 
 def netted(blade: bg.Blade, tolerance: float) -> tuple[Any, Callable[[Path], None]]:
     """Return our solid's shape, and what writes it."""
-    made = cad.solid(blade, tolerance=tolerance * 1e-3)
-    return made.shape, lambda path: cad_files.write_step(made, path)
+    made = solids.solid(blade, tolerance=tolerance * 1e-3)
+    return made.shape, lambda path: exchange.write_step(made, path)
 
 
 def lofted(blade: bg.Blade, sections: float) -> tuple[Any, Callable[[Path], None]]:
@@ -132,7 +132,7 @@ def work(contender: str) -> None:
             if asked["measure"]:
                 row["mm"] = distance_mm(blade, shape)
                 row["MB"] = path.stat().st_size / 1e6
-                row["valid"] = float(cad.is_valid(shape))
+                row["valid"] = float(solids.is_valid(shape))
             print("\n" + json.dumps(row), flush=True)
 
 

@@ -21,11 +21,11 @@ from math import comb
 import numpy as np
 from figures import asked, figure, seconds
 
-from bladegen import affine, cst, grassmann
-from bladegen.database import baselines
-from bladegen.landmarks import landmarks
-from bladegen.pga import ShapeSpace
-from bladegen.sections import SectionSplines
+from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.formats.baselines import baselines
+from bladegen.shapes import affine, cst, grassmann
+from bladegen.shapes.shape_space import ShapeSpace
 
 LOOPED, STEPS = 200, 7  # shapes that are looped over; gradient steps to 1e-10 rad
 AFFINE = 2  # numbers of a section of unit chord beside its modes

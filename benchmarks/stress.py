@@ -31,10 +31,12 @@ from figures import figure
 from figures import parser as arguments
 
 import bladegen as bg
-from bladegen import cad, cad_files, checks, edges, properties
-from bladegen.crossing import crossing_sections
+from bladegen.airfoils.crossing import crossing_sections
+from bladegen.blade import edges
+from bladegen.cad import exchange, solids
 from bladegen.errors import BladegenError, PerturbationError
-from bladegen.tips import Tip, flat_tip, round_tip
+from bladegen.measures import checks, properties
+from bladegen.surface.tips import Tip, flat_tip, round_tip
 
 PIECE = 10  # blades of one worker process
 MESHED = 10  # every so many-th solid is meshed by gmsh
@@ -98,13 +100,13 @@ def measured(number: int, seed: int, space: bg.ShapeSpace, folder: Path) -> dict
     }
     path = folder / "blade.step"
     try:
-        solid = cad.solid(blade, tolerance=tolerance, tip=tip)
-        cad_files.write_step(solid, path)
-        before = cad.quick_volume(solid.shape) / cad.MILLIMETRES**3
+        solid = solids.solid(blade, tolerance=tolerance, tip=tip)
+        exchange.write_step(solid, path)
+        before = solids.quick_volume(solid.shape) / solids.MILLIMETRES**3
         off = before / solid.net.volume() - 1.0
         if abs(off) >= OCCT:  # twisted blades ask for the slower rule
-            off = cad.volume(solid.shape) / cad.MILLIMETRES**3 / solid.net.volume() - 1.0
-        figures = checks.solid_figures(cad_files.read_step(path), quick=True)
+            off = solids.volume(solid.shape) / solids.MILLIMETRES**3 / solid.net.volume() - 1.0
+        figures = checks.solid_figures(exchange.read_step(path), quick=True)
         profiles = blade.trailing_edge(blade.profiles(SPANS), blade.chord(SPANS))
     except BladegenError as error:
         return row | {"error": str(error), "seconds": time.perf_counter() - start}

@@ -20,7 +20,7 @@ from figures import figure, parser
 from playwright.sync_api import sync_playwright
 
 import bladegen as bg
-from bladegen import checks
+from bladegen.measures import checks
 from bladegen.studio.model import Baseline
 from bladegen.studio.server import serve
 from bladegen.studio.state import State

@@ -52,7 +52,7 @@ HEAD = ("blade", "Cp", "AEP, GWh", "power, MW", "rated at, m/s", "thrust, MN", "
 
 def bladegen(*arguments: object) -> None:
     """Run the command line; what it prints of a failure is shown."""
-    command = [sys.executable, "-c", "from bladegen.cli import main; main()"]
+    command = [sys.executable, "-c", "from bladegen.cli.commands import main; main()"]
     done = subprocess.run(
         [*command, *map(str, arguments)], capture_output=True, text=True, check=False
     )

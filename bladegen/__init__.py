@@ -9,13 +9,17 @@
 The names below are loaded when first used, so that ``import bladegen`` stays fast.
 """
 
+from collections.abc import Callable
 from importlib import import_module
 from logging import NullHandler, getLogger
 from typing import TYPE_CHECKING, Any
 
+from bladegen.support.services import provide
+
 if TYPE_CHECKING:
-    from bladegen.blade import Blade
-    from bladegen.definition import (
+    from bladegen.blade.blade import Blade
+    from bladegen.blade.deformation import Coordinates, Window
+    from bladegen.definition.blade_definition import (
         Airfoil,
         BladeDefinition,
         Distribution,
@@ -23,38 +27,37 @@ if TYPE_CHECKING:
         Rotor,
         Station,
     )
-    from bladegen.deformation import Coordinates, Window
     from bladegen.errors import BladegenError, Finding
-    from bladegen.exporters import export
-    from bladegen.families import Family, family
-    from bladegen.pga import ShapeSpace
-    from bladegen.readers import bundled, read
-    from bladegen.writers import write, write_airfoil
+    from bladegen.exports.exporters import export
+    from bladegen.families.family import Family, family
+    from bladegen.formats.reading import bundled, read
+    from bladegen.formats.writing import write, write_airfoil
+    from bladegen.shapes.shape_space import ShapeSpace
 
 __version__ = "1.0.0"
 
 getLogger(__name__).addHandler(NullHandler())  # who wants to hear more asks for it
 
 _HOME = {
-    "Airfoil": "definition",
-    "Blade": "blade",
-    "BladeDefinition": "definition",
+    "Airfoil": "definition.blade_definition",
+    "Blade": "blade.blade",
+    "BladeDefinition": "definition.blade_definition",
     "BladegenError": "errors",
-    "Coordinates": "deformation",
-    "Distribution": "definition",
-    "Family": "families",
+    "Coordinates": "blade.deformation",
+    "Distribution": "definition.distribution",
+    "Family": "families.family",
     "Finding": "errors",
-    "ReferenceAxis": "definition",
-    "Rotor": "definition",
-    "ShapeSpace": "pga",
-    "Station": "definition",
-    "Window": "deformation",
-    "bundled": "readers",
-    "export": "exporters",
-    "family": "families",
-    "read": "readers",
-    "write": "writers",
-    "write_airfoil": "writers",
+    "ReferenceAxis": "definition.blade_definition",
+    "Rotor": "definition.blade_definition",
+    "ShapeSpace": "shapes.shape_space",
+    "Station": "definition.blade_definition",
+    "Window": "blade.deformation",
+    "bundled": "formats.reading",
+    "export": "exports.exporters",
+    "family": "families.family",
+    "read": "formats.reading",
+    "write": "formats.writing",
+    "write_airfoil": "formats.airfoils.writing",
 }
 
 __all__ = [
@@ -82,6 +85,15 @@ __all__ = [
 
 
 _MODULES = ("affine", "grassmann")
+_SERVICES = {"blade_html": "views.notebook"}  # what values offer, and the modules that do it
+
+
+def _finder(name: str, home: str) -> Callable[[], Any]:
+    return lambda: getattr(import_module(f"bladegen.{home}"), name)
+
+
+for _name, _home in _SERVICES.items():
+    provide(_name, _finder(_name, _home))
 
 
 def __getattr__(name: str) -> Any:

@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import zarr
 
 import bladegen as bg
-from bladegen.family_run import Order, run
+from bladegen.families.run import Order, run
 
 
 def main(target: Path) -> None:

@@ -11,8 +11,9 @@ import pyvista as pv
 from PIL import Image
 
 import bladegen as bg
-from bladegen import grid, preview, style
-from bladegen.tips import round_tip
+from bladegen.surface import grid
+from bladegen.surface.tips import round_tip
+from bladegen.views import preview, style
 
 COLOURS = {
     "suction side": "#b9c6d2",

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 
 import bladegen as bg
-from bladegen import affine, cst, grassmann, plots, style
-from bladegen.database import baselines
-from bladegen.landmarks import landmarks
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.formats.baselines import baselines
+from bladegen.shapes import affine, cst, grassmann
+from bladegen.views import plots, style
 
 RANKS = np.array([1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24])
 LEARNED, HELD_OUT, SEED = 200, 20, 2022

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 
 import bladegen as bg
-from bladegen import cst, plots
-from bladegen.database import baselines
-from bladegen.landmarks import landmarks
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.formats.baselines import baselines
+from bladegen.shapes import cst
+from bladegen.views import plots
 
 SEED, COUNT = 2022, 1000  # those of the bundled space, so that its coordinates can be used
 

@@ -7,7 +7,8 @@ import sys
 from pathlib import Path
 
 import bladegen as bg
-from bladegen import affine, plots
+from bladegen.shapes import affine
+from bladegen.views import plots
 
 
 def main(target: Path) -> None:

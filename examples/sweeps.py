@@ -12,10 +12,11 @@ from pathlib import Path
 import numpy as np
 
 import bladegen as bg
-from bladegen import cst, plots
-from bladegen.crossing import crossing_sections
-from bladegen.database import baselines
-from bladegen.landmarks import landmarks
+from bladegen.airfoils.crossing import crossing_sections
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.formats.baselines import baselines
+from bladegen.shapes import cst
+from bladegen.views import plots
 
 SEED, SWEEPS, STEPS, SHOWN = 7, 200, 11, 4
 EVERY = 4  # landmarks are thinned to 101 for the test of validity

@@ -24,12 +24,20 @@ import numpy as np
 from fuzzing import Files, Target
 
 import bladegen as bg
-from bladegen import checks, comparison, foreign, foreign_reader, surfaces
 from bladegen.errors import FileError
+from bladegen.measures import checks, foreign, foreign_reader, surfaces
+from bladegen.views import comparison
 
 SECONDS = 20  # of a processor for one input
 FORMATS = (".step", ".iges", ".brep", ".stl", ".glb", ".ply", ".obj", ".3mf", ".vtp", ".off")
-LIBRARIES = ("OCP", "trimesh", "networkx", "lxml.etree", "vtkmodules.vtkIOXML", "bladegen.checks")
+LIBRARIES = (
+    "OCP",
+    "trimesh",
+    "networkx",
+    "lxml.etree",
+    "vtkmodules.vtkIOXML",
+    "bladegen.measures.checks",
+)
 
 
 class Forked:
@@ -93,7 +101,7 @@ def good(suffix: str) -> tuple[bytes, ...]:
         path = Path(folder) / f"blade{suffix}"
         blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=21)
         if suffix == ".off":
-            from bladegen import mesh
+            from bladegen.surface import mesh
 
             mesh.to_trimesh(mesh.from_blade(blade, stations=14)).export(path)
             return (path.read_bytes(),)
@@ -196,7 +204,7 @@ def _plate() -> comparison.Side:
     """A box of a blade's size."""
     import trimesh
 
-    from bladegen.mesh import TriangleMesh
+    from bladegen.surface.mesh import TriangleMesh
 
     box = trimesh.creation.box((2.0, 3.0, 60.0))
     return comparison.Side("box", surfaces.of_mesh(TriangleMesh(box.vertices, box.faces)))

@@ -32,16 +32,18 @@ import mutators
 import numpy as np
 
 import bladegen as bg
-from bladegen import archive, cst, database, writers
-from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.airfoils.polars import Polar
+from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.blade.planform import normal_to_axis, normal_to_z
 from bladegen.errors import BladegenError
-from bladegen.exporters import Options
-from bladegen.files import safe_stem
-from bladegen.landmarks import landmarks
-from bladegen.planform import normal_to_axis, normal_to_z
-from bladegen.polars import Polar
-from bladegen.readers.airfoil_files import read_airfoil
-from bladegen.readers.yaml_file import parse_yaml
+from bladegen.exports.exporters import Options
+from bladegen.formats import writing
+from bladegen.formats.airfoils.reading import read_airfoil
+from bladegen.formats.windio.yaml_file import parse_yaml
+from bladegen.shapes import cst, database
+from bladegen.support import archive
+from bladegen.support.files import safe_stem
 from strategies import naca
 
 PATIENCE = 240.0  # s for one input on a machine that others use; the slowest needs 0.5 s of a core
@@ -310,7 +312,7 @@ def answer_blade(path: Path, out: Path, rng: Random) -> str:
     finite(blade.profiles(SPANS), blade.sections(SPANS))
     chance = rng.random()
     if chance < BUILT:
-        from bladegen.build import build
+        from bladegen.exports.build import build
 
         build(blade, out, formats=["stl"], options=Options(stations=len(blade.eta) + 9))
         for file in out.glob("*.json"):
@@ -362,7 +364,7 @@ def converted(form: str, suffix: str) -> tuple[Files, ...]:
             source, target = Path(folder) / "small.yaml", Path(folder) / "made" / f"blade{suffix}"
             source.write_text(mutators.written(sparse(document)), encoding="utf-8")
             target.parent.mkdir()
-            writers.write(bg.read(source), target, format=form)
+            writing.write(bg.read(source), target, format=form)
             others = sorted(p for p in target.parent.rglob("*") if p.is_file() and p != target)
             found.append(
                 {str(p.relative_to(target.parent)): p.read_bytes() for p in (target, *others)}
@@ -393,8 +395,8 @@ def answer_other(path: Path, out: Path, rng: Random) -> str:
     """Read and use a blade of any format, and now and then write it in another."""
     outcome = answer_blade(path, out, rng)
     if rng.random() < 0.1:
-        row = rng.choice(writers.FORMATS)
-        writers.write(bg.read(path), out / f"again{row.suffixes[0]}", format=row.name)
+        row = rng.choice(writing.FORMATS)
+        writing.write(bg.read(path), out / f"again{row.suffixes[0]}", format=row.name)
         return "converted"
     return outcome
 
@@ -432,7 +434,7 @@ def flown_files(suffix: str) -> Files:
         (room / "shared").mkdir(parents=True)
         target = room / "shared" / f"blade{'.dat' if suffix == '.fst' else suffix}"
         blade = flown(bg.read(source))
-        writers.write(blade if suffix == ".htc" else plain(blade), target)
+        writing.write(blade if suffix == ".htc" else plain(blade), target)
         if suffix == ".fst":
             target = _model(room)
         others = sorted(p for p in room.rglob("*") if p.is_file() and p != target)

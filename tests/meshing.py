@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bladegen.arrays import Array, Indices
+from bladegen.support.arrays import Array, Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from bladegen.arrays import Array
+from bladegen.support.arrays import Array
 
 GOLDEN = Path(__file__).parent / "golden"
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import bladegen as bg
-from bladegen.definition import BladeDefinition
+from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import FileError
 
 

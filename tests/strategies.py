@@ -4,9 +4,15 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from bladegen import grassmann
-from bladegen.arrays import Array, readonly
-from bladegen.definition import Airfoil, BladeDefinition, Distribution, ReferenceAxis, Station
+from bladegen.definition.blade_definition import (
+    Airfoil,
+    BladeDefinition,
+    Distribution,
+    ReferenceAxis,
+    Station,
+)
+from bladegen.shapes import grassmann
+from bladegen.support.arrays import Array, readonly
 
 STEADY = settings.default.max_examples < 20  # `make test`, as opposed to `make test-all`
 SEEDS = st.integers(0, 2**32 - 1)

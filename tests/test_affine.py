@@ -4,9 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen import affine
+from bladegen.airfoils.landmarks import landmarks
 from bladegen.errors import GeometryError
-from bladegen.landmarks import landmarks
+from bladegen.shapes import affine
 from strategies import airfoils, circle, ellipse, maps, points, rotations
 
 STATIONS = np.stack([landmarks(xy, 101) for xy in (circle(), ellipse(0.5), ellipse(0.2))])

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from bladegen.errors import FileError
-from bladegen.readers.airfoil_files import of_lines, read_contour, tabulates
-from bladegen.readers.closing import ends
-from bladegen.readers.contours import ContourError, contour
+from bladegen.formats.airfoils.closing import ends
+from bladegen.formats.airfoils.contours import ContourError, contour
+from bladegen.formats.airfoils.reading import of_lines, read_contour, tabulates
 from strategies import circle, naca
 
 SHARP = np.round(naca(0.18, 0.02, 0.0, 61), 6)

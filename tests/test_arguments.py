@@ -7,11 +7,22 @@ import numpy as np
 import pytest
 
 import bladegen as bg
-from bladegen import affine, edges, grassmann, planform, tips
-from bladegen.arguments import amount, function, numbers, one_of, path_of, shown, suggestion, whole
-from bladegen.deformation import AffineChange
+from bladegen.blade import edges, planform
+from bladegen.blade.deformation import AffineChange
 from bladegen.errors import BladegenError, ExportError, PerturbationError
-from bladegen.exporters import Options
+from bladegen.exports.exporters import Options
+from bladegen.shapes import affine, grassmann
+from bladegen.support.arguments import (
+    amount,
+    function,
+    numbers,
+    one_of,
+    path_of,
+    shown,
+    suggestion,
+    whole,
+)
+from bladegen.surface import tips
 
 DEFINITION = bg.read("iea15mw")
 BLADE = bg.Blade.from_definition(DEFINITION)

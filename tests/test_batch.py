@@ -5,12 +5,13 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen import affine, polygons
-from bladegen.batch import FAULTS, LOST_THICKNESS, SectionBatch
-from bladegen.crossing import crossing_sections
-from bladegen.deformation import AffineChange, Window
-from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.airfoils import polygons
+from bladegen.airfoils.crossing import crossing_sections
+from bladegen.blade.deformation import AffineChange, Window
+from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import GeometryError
+from bladegen.shapes import affine
+from bladegen.variants.batch import FAULTS, LOST_THICKNESS, SectionBatch
 
 BLADES = ("iea15mw", "nrel5mw", "dtu10mw")
 SPANS = np.linspace(0.0, 1.0, 37)

@@ -6,14 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen import affine
-from bladegen.blade import Blade
-from bladegen.definition import Distribution
-from bladegen.edges import AsGiven
+from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.blade.blade import Blade
+from bladegen.blade.edges import AsGiven
+from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import DefinitionError
-from bladegen.landmarks import landmarks
-from bladegen.readers import bundled, read
-from bladegen.sections import SectionSplines
+from bladegen.formats.reading import bundled, read
+from bladegen.shapes import affine
 from strategies import SEEDS, definitions, few
 
 N = 101

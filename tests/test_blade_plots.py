@@ -3,8 +3,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import blade_plots, grassmann
-from bladegen.cli_view import What
+from bladegen.cli.view import What
+from bladegen.shapes import grassmann
+from bladegen.views import blade_plots
 
 
 @pytest.fixture(scope="module")

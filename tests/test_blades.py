@@ -14,9 +14,9 @@ import yaml
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.interpolate import PchipInterpolator
 
-from bladegen.arrays import Array
-from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis
-from bladegen.readers import bundled, read
+from bladegen.definition.blade_definition import BladeDefinition, Distribution, ReferenceAxis
+from bladegen.formats.reading import bundled, read
+from bladegen.support.arrays import Array
 
 ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = Path(__file__).parent / "golden"
@@ -236,7 +236,7 @@ def test_bundled_blades_are_found_in_an_installed_package_too(tmp_path):
     skipped = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "bladegen", package, ignore=skipped, dirs_exist_ok=True)
     shutil.copytree(ROOT / "blades", package / "blades", dirs_exist_ok=True)
-    code = "from bladegen.readers import bundled, read; print(*bundled(), read('dtu10mw').source)"
+    code = "import bladegen as bg; print(*bg.bundled(), bg.read('dtu10mw').source)"
     done = subprocess.run(
         [sys.executable, "-c", code],
         cwd=tmp_path,

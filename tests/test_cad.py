@@ -5,14 +5,15 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import cad, cad_files, properties
-from bladegen.blade import Blade
-from bladegen.checks import solid_figures
-from bladegen.definition import Distribution
-from bladegen.edges import AsGiven, Sharp
+from bladegen.blade.blade import Blade
+from bladegen.blade.edges import AsGiven, Sharp
+from bladegen.cad import exchange, solids
+from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import CadError
-from bladegen.readers import bundled, read
-from bladegen.tips import round_tip
+from bladegen.formats.reading import bundled, read
+from bladegen.measures import properties
+from bladegen.measures.checks import solid_figures
+from bladegen.surface.tips import round_tip
 
 FACES = ["suction side", "pressure side", "trailing edge", "root", "tip"]
 
@@ -24,13 +25,13 @@ def blade(request):
 
 @pytest.fixture(scope="module")
 def solid(blade):
-    return cad.solid(blade)
+    return solids.solid(blade)
 
 
 @pytest.fixture(scope="module")
 def step(solid, tmp_path_factory):
     path = tmp_path_factory.mktemp("step") / "blade.step"
-    cad_files.write_step(solid, path)
+    exchange.write_step(solid, path)
     return path
 
 
@@ -40,12 +41,12 @@ def names_in(text):
 
 
 def test_the_file_is_one_valid_closed_solid_with_the_same_volume(solid, step):
-    figures = solid_figures(cad_files.read_step(step), quick=True)
+    figures = solid_figures(exchange.read_step(step), quick=True)
     assert figures["one_solid"]
     assert figures["valid"]
     assert figures["closed"]
     assert figures["faces"] == 5
-    before = cad.quick_volume(solid.shape) * 1e-9
+    before = solids.quick_volume(solid.shape) * 1e-9
     assert_allclose(figures["volume_m3"], before, rtol=1e-9)
 
 
@@ -71,7 +72,7 @@ def test_occt_finds_points_of_the_blade_on_the_file_s_surface(blade, step):
     from OCP.TopAbs import TopAbs_SHELL
     from OCP.TopExp import TopExp_Explorer
 
-    shell = TopExp_Explorer(cad_files.read_step(step), TopAbs_SHELL).Current()
+    shell = TopExp_Explorer(exchange.read_step(step), TopAbs_SHELL).Current()
     rng = np.random.default_rng(3)
     half = np.sort(rng.uniform(0, 0.5, 3))
     u = np.concatenate([half, 1 - half[::-1]])
@@ -87,8 +88,8 @@ def test_volumes_agree(blade, solid):
     by_sections = properties.volume(blade)
     assert_allclose(solid.net.volume(), by_sections, rtol=3e-6)
     assert solid.volume == solid.net.volume()
-    assert_allclose(cad.volume(solid.shape) / 1e9, by_sections, rtol=1e-5)
-    assert_allclose(solid.area, cad.area(solid.shape) / 1e6, rtol=1e-12)
+    assert_allclose(solids.volume(solid.shape) / 1e9, by_sections, rtol=1e-5)
+    assert_allclose(solid.area, solids.area(solid.shape) / 1e6, rtol=1e-12)
 
 
 def test_ends_are_planes(solid):
@@ -101,16 +102,16 @@ def test_ends_are_planes(solid):
 
 
 def test_a_round_tip_leaves_one_valid_solid_and_adds_volume(blade, solid):
-    rounded = cad.solid(blade, sections=60, tip=round_tip)
+    rounded = solids.solid(blade, sections=60, tip=round_tip)
     figures = solid_figures(rounded.shape, quick=True)
-    flat = solid_figures(cad.solid(blade, sections=60).shape, quick=True)
+    flat = solid_figures(solids.solid(blade, sections=60).shape, quick=True)
     assert figures["one_solid"]
     assert figures["valid"]
     assert figures["closed"]
     assert figures["area_m2"] > flat["area_m2"]
     assert figures["bounds_m"][1][2] > flat["bounds_m"][1][2]
     assert rounded.tip_volume > 0 == solid.tip_volume
-    assert_allclose(rounded.volume, cad.volume(rounded.shape) / 1e9, rtol=5e-6)
+    assert_allclose(rounded.volume, solids.volume(rounded.shape) / 1e9, rtol=5e-6)
 
 
 @pytest.mark.nightly  # the exact volumes of the bundled blades are tested on every run
@@ -126,12 +127,12 @@ def test_occt_finds_the_exact_volume_of_a_twisted_variant():
         twist_scale=0.743,
         allow_odd=True,
     )
-    made = cad.solid(variant, tolerance=1e-3)
-    assert_allclose(cad.volume(made.shape) / 1e9, made.volume, rtol=1e-5)
+    made = solids.solid(variant, tolerance=1e-3)
+    assert_allclose(solids.volume(made.shape) / 1e9, made.volume, rtol=1e-5)
 
 
 def test_a_sharp_edge_is_sewn_without_a_strip(blade):
-    sharp = cad.solid(blade.with_trailing_edge(Sharp()), sections=80)
+    sharp = solids.solid(blade.with_trailing_edge(Sharp()), sections=80)
     assert [name for name, _ in sharp.faces] == [f for f in FACES if f != "trailing edge"]
     figures = solid_figures(sharp.shape, quick=True)
     assert figures["one_solid"]
@@ -141,12 +142,12 @@ def test_a_sharp_edge_is_sewn_without_a_strip(blade):
 def test_an_edge_sharp_in_part_is_refused():
     given = Blade.from_definition(read("nrel5mw")).with_trailing_edge(AsGiven())
     with pytest.raises(CadError, match="sharp at some spans and blunt at others"):
-        cad.solid(given, sections=40)
+        solids.solid(given, sections=40)
 
 
 def test_cadquery_can_go_on_from_the_solid():
     blade = Blade.from_definition(read("nrel5mw"), landmarks=101)
-    solid = cad.solid(blade, sections=40)
+    solid = solids.solid(blade, sections=40)
     work = solid.workplane()
     assert work.val().isValid()
     assert_allclose(work.val().BoundingBox().zmax, 61500, atol=30)
@@ -160,30 +161,30 @@ def test_swept_blades_make_solids_too(tmp_path):
         name="swept blåde",
         axis=replace(definition.axis, y=Distribution(grid, 4.0 * grid**3)),
     )
-    solid = cad.solid(Blade.from_definition(swept, landmarks=201))
+    solid = solids.solid(Blade.from_definition(swept, landmarks=201))
     assert solid.deviation.maximum < 0.3e-3
-    cad_files.write_step(solid, tmp_path / "swept.step")
-    assert solid_figures(cad_files.read_step(tmp_path / "swept.step"), quick=True)["valid"]
+    exchange.write_step(solid, tmp_path / "swept.step")
+    assert solid_figures(exchange.read_step(tmp_path / "swept.step"), quick=True)["valid"]
 
 
 def test_files_that_are_no_step_are_refused(tmp_path):
     bad = tmp_path / "bad.step"
     bad.write_text("solid nonsense")
     with pytest.raises(CadError, match="not a STEP file"):
-        cad_files.read_step(bad)
+        exchange.read_step(bad)
 
 
 def test_a_folder_that_is_not_there_is_an_error(solid, tmp_path):
     with pytest.raises(CadError, match="could not write"):
-        cad_files.write_step(solid, tmp_path / "nowhere" / "blade.step")
+        exchange.write_step(solid, tmp_path / "nowhere" / "blade.step")
 
 
 def test_the_same_solid_with_the_same_time_makes_the_same_file(tmp_path, monkeypatch):
     blade = Blade.from_definition(read("dtu10mw"), landmarks=101)
-    solid = cad.solid(blade, sections=40)
+    solid = solids.solid(blade, sections=40)
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
     for name in ("one.step", "two.step"):
-        cad_files.write_step(solid, tmp_path / name)
+        exchange.write_step(solid, tmp_path / name)
     one, two = ((tmp_path / name).read_text() for name in ("one.step", "two.step"))
     assert one == two
     assert "'1970-01-02T00:00:00'" in one

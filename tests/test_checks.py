@@ -5,10 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import checks, mesh
-from bladegen.definition import Distribution
-from bladegen.edges import AsGiven, MinimumThickness
+from bladegen.blade.edges import AsGiven, MinimumThickness
+from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import BladegenError, FileError
+from bladegen.measures import checks
+from bladegen.surface import mesh
 
 
 @pytest.fixture(scope="module")

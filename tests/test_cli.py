@@ -8,19 +8,24 @@ import pytest
 from typer.testing import CliRunner
 
 import bladegen
-from bladegen import cli
+from bladegen.cli import commands
 from bladegen.errors import BladegenError
 
 RUN = CliRunner()
 
 
 def run(*arguments):
-    return RUN.invoke(cli.app, [str(argument) for argument in arguments])
+    return RUN.invoke(commands.app, [str(argument) for argument in arguments])
 
 
 def main(*arguments):
     """The command as users call it, in a process of its own."""
-    command = [sys.executable, "-c", "from bladegen.cli import main; main()", *map(str, arguments)]
+    command = [
+        sys.executable,
+        "-c",
+        "from bladegen.cli.commands import main; main()",
+        *map(str, arguments),
+    ]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
@@ -83,8 +88,8 @@ def test_build_makes_grids_as_asked_for(tmp_path):
 
 
 def test_build_that_misses_its_tolerance_ends_with_1(tmp_path, monkeypatch):
-    monkeypatch.setattr("bladegen.net.MAX_SECTIONS", 20)
-    monkeypatch.setattr("bladegen.net.FIRST_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.net.MAX_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.net.FIRST_SECTIONS", 20)
     result = run("build", "nrel5mw", "-o", tmp_path, "--format", "step", "--tolerance", "0.001mm")
     assert isinstance(result.exception, BladegenError)
     assert "out-of-tolerance" in str(result.exception)
@@ -153,9 +158,9 @@ def test_an_interrupt_is_said_shortly(monkeypatch, capsys):
     def interrupt():
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "app", interrupt)
+    monkeypatch.setattr(commands, "app", interrupt)
     with pytest.raises(SystemExit, match="130"):
-        cli.main()
+        commands.main()
     assert capsys.readouterr().err == "bladegen: interrupted\n"
 
 
@@ -163,9 +168,9 @@ def test_a_missing_library_is_said_in_a_line(monkeypatch, capsys):
     def unloadable():
         raise ImportError("libGL.so.1: cannot open shared object file\n", name="OCP.gp")
 
-    monkeypatch.setattr(cli, "app", unloadable)
+    monkeypatch.setattr(commands, "app", unloadable)
     with pytest.raises(SystemExit, match="1"):
-        cli.main()
+        commands.main()
     said = capsys.readouterr().err
     assert said.startswith("bladegen: this command needs OCP, which cannot be imported (libGL.so.1")
     assert "pip install cadquery-ocp" in said
@@ -269,7 +274,7 @@ def test_light_solids_are_small_and_say_their_schema(tmp_path):
 
 def test_hub_radius_and_precone_reach_the_rotor(monkeypatch, tmp_path):
     seen = []
-    monkeypatch.setattr(cli, "_build", lambda *arguments: seen.append(arguments[-1]))
+    monkeypatch.setattr(commands, "_build", lambda *arguments: seen.append(arguments[-1]))
     words = ("build", "nrel5mw", "-o", tmp_path, "--landmarks", 101)
     done = run(*words, "--rotor", "--hub-radius", "2.5m", "--precone", "4")
     assert done.exit_code == 0

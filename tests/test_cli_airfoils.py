@@ -12,10 +12,11 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import cli, contact
+from bladegen.cli import commands as cli
 from bladegen.errors import BladegenError
-from bladegen.family_run import Order
-from bladegen.identity import fingerprint
+from bladegen.families.identity import fingerprint
+from bladegen.families.run import Order
+from bladegen.views import contact_sheet
 
 READING = {"info", "check", "convert", "build", "perturb", "family", "preview", "plot", "studio"}
 CALLS = [
@@ -80,7 +81,7 @@ def test_shapes_that_a_file_holds_itself_are_kept_and_said(tmp_path):
 
 
 def test_a_family_goes_on_with_the_same_shapes_only(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(contact, "contact_sheet", lambda *_: "not drawn")
+    monkeypatch.setattr(contact_sheet, "contact_sheet", lambda *_: "not drawn")
     folder = ("--airfoils", tmp_path / "shapes")
     assert "--airfoils DIR" in str(run(FAMILY).exception)
     assert run(FAMILY, *folder).exit_code == 0

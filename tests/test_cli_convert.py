@@ -3,14 +3,14 @@
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import cli
-from bladegen.terminal import print_findings
+from bladegen.cli import commands
+from bladegen.cli.terminal import print_findings
 
 RUN = CliRunner()
 
 
 def run(*arguments):
-    return RUN.invoke(cli.app, [str(argument) for argument in arguments])
+    return RUN.invoke(commands.app, [str(argument) for argument in arguments])
 
 
 def test_convert_says_what_it_read_and_wrote_and_what_is_lost(tmp_path):

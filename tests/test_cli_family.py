@@ -2,15 +2,16 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from bladegen import cli, contact, preview
+from bladegen.cli import commands
 from bladegen.errors import BladegenError, RenderError
-from bladegen.family_files import FamilyFolder, read_manifest
+from bladegen.families.folder import FamilyFolder, read_manifest
+from bladegen.views import contact_sheet, preview
 
 FEW = ("--spans", "16", "--count", "5", "--seed", "3")
 
 
 def run(*arguments):
-    return CliRunner().invoke(cli.app, ["family", "dtu10mw", *map(str, arguments)])
+    return CliRunner().invoke(commands.app, ["family", "dtu10mw", *map(str, arguments)])
 
 
 def test_a_family_is_made_and_shown(tmp_path):
@@ -97,6 +98,6 @@ def test_a_missing_dask_says_how_to_get_it(tmp_path, monkeypatch):
 
 
 def test_many_variants_are_thinned_in_the_overlay(monkeypatch, tmp_path):
-    monkeypatch.setattr(contact, "MOST", 2)
+    monkeypatch.setattr(contact_sheet, "MOST", 2)
     result = run("-o", tmp_path / "f", *FEW)
     assert "2 of 5 sound variants overlaid" in result.output

@@ -4,15 +4,15 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import cli, keys, preview
-from bladegen.cli_perturb import Changes
-from bladegen.cli_view import What
+from bladegen.cli import commands
+from bladegen.cli.perturb import Changes
+from bladegen.cli.view import What
 from bladegen.errors import BladegenError
-from bladegen.preview import sweep
+from bladegen.views import keys, preview, sweep
 
 
 def run(*words):
-    return CliRunner().invoke(cli.app, [str(word) for word in words])
+    return CliRunner().invoke(commands.app, [str(word) for word in words])
 
 
 @pytest.fixture

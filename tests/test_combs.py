@@ -5,11 +5,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import combs
-from bladegen.cli_options import Making
+from bladegen.airfoils.landmarks import contour
+from bladegen.cli.options import Making
 from bladegen.errors import BladegenError, ExportError
-from bladegen.landmarks import contour
-from bladegen.style import BASELINE, VARIANT
+from bladegen.views import combs
+from bladegen.views.style import BASELINE, VARIANT
 from strategies import ellipse
 
 

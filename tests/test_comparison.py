@@ -7,10 +7,13 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import cad, cad_files, cli, mesh, surfaces
-from bladegen.comparison import Side, compared, surface_of
+from bladegen.cad import exchange, solids
+from bladegen.cli import commands
 from bladegen.errors import BladegenError, FileError
-from bladegen.mesh import TriangleMesh
+from bladegen.measures import surfaces
+from bladegen.surface import mesh
+from bladegen.surface.mesh import TriangleMesh
+from bladegen.views.comparison import Side, compared, surface_of
 
 
 @pytest.fixture(scope="module")
@@ -25,13 +28,13 @@ def triangles(blade):
 
 @pytest.fixture(scope="module")
 def solid(blade):
-    return cad.solid(blade, tolerance=1e-3)
+    return solids.solid(blade, tolerance=1e-3)
 
 
 @pytest.fixture(scope="module")
 def step(solid, tmp_path_factory):
     path = tmp_path_factory.mktemp("solid") / "one.step"
-    cad_files.write_step(solid, path)
+    exchange.write_step(solid, path)
     return path
 
 
@@ -86,9 +89,9 @@ def test_a_solid_that_was_moved_is_as_far_as_it_was_moved(solid):
     move = gp_Trsf()
     move.SetTranslation(gp_Vec(0.0, 0.0, 1.0))
     moved = BRepBuilderAPI_Transform(solid.shape, move).Shape()
-    from bladegen import cad_patches
+    from bladegen.cad import face_patches
 
-    one, two = (surfaces.of_faces(cad_patches.faces(s)[0]) for s in (solid.shape, moved))
+    one, two = (surfaces.of_faces(face_patches.faces(s)[0]) for s in (solid.shape, moved))
     found = compared(Side("one", one), Side("two", two))
     assert_allclose(found.figures["maximum_mm"], 1.0, atol=1e-4)  # at the flat ends
 
@@ -147,11 +150,11 @@ def test_check_compares_two_and_draws(blade, tmp_path):
     picture = tmp_path / "apart.png"
     runner = CliRunner()
     files = [str(tmp_path / "a.stl"), str(tmp_path / "b.stl")]
-    result = runner.invoke(cli.app, ["check", *files, "--screenshot", str(picture)])
+    result = runner.invoke(commands.app, ["check", *files, "--screenshot", str(picture)])
     assert result.exit_code == 0, result.output
     assert "RMS" in result.output
     assert np.asarray(Image.open(picture).convert("L"), dtype=float).std() > 5
-    figures = json.loads(runner.invoke(cli.app, ["check", *files, "--json"]).output)
+    figures = json.loads(runner.invoke(commands.app, ["check", *files, "--json"]).output)
     root = blade.chord(0.0) / 2 * 0.02 * 1000
     assert figures["maximum_mm"] > root
     assert len(figures["bands"]) == 10
@@ -165,10 +168,10 @@ def test_check_says_first_what_the_rest_rests_on(step, tmp_path):
     shrink = gp_Trsf()
     shrink.SetScale(gp_Pnt(0, 0, 0), 1e-3)
     writer = STEPControl_Writer()
-    shape = BRepBuilderAPI_Transform(cad_files.read(step), shrink, True).Shape()
+    shape = BRepBuilderAPI_Transform(exchange.read(step), shrink, True).Shape()
     writer.Transfer(shape, STEPControl_AsIs)
     writer.Write(str(tmp_path / "small.step"))
-    result = CliRunner().invoke(cli.app, ["check", str(tmp_path / "small.step"), "dtu10mw"])
+    result = CliRunner().invoke(commands.app, ["check", str(tmp_path / "small.step"), "dtu10mw"])
     assert result.exit_code == 0
     said = result.output.splitlines()[0]
     assert said.startswith("note: the STEP file small.step is a thousandth of the definition")
@@ -184,7 +187,7 @@ def test_what_has_no_surface_is_refused(tmp_path, name):
 
 
 def test_a_surface_of_no_numbers_is_refused(step, monkeypatch):
-    from bladegen import foreign
+    from bladegen.measures import foreign
 
     honest = foreign.ask("surface", step)
     for name, value in (("0/poles", np.nan), ("0/weights", 0.0)):
@@ -196,7 +199,7 @@ def test_a_surface_of_no_numbers_is_refused(step, monkeypatch):
 
 
 def test_faces_that_are_lost_are_said(step, blade, monkeypatch):
-    from bladegen import foreign
+    from bladegen.measures import foreign
 
     honest = foreign.ask("surface", step)
     told = foreign.Answer(honest.facts | {"lost": 2}, honest.arrays)
@@ -205,7 +208,7 @@ def test_faces_that_are_lost_are_said(step, blade, monkeypatch):
 
 
 def test_a_picture_needs_two():
-    result = CliRunner().invoke(cli.app, ["check", "dtu10mw", "--screenshot", "x.png"])
+    result = CliRunner().invoke(commands.app, ["check", "dtu10mw", "--screenshot", "x.png"])
     assert isinstance(result.exception, BladegenError)
 
 

@@ -1,8 +1,8 @@
 import numpy as np
 from hypothesis import given
 
-from bladegen.crossing import crossing_sections, first_crossing
-from bladegen.landmarks import landmarks
+from bladegen.airfoils.crossing import crossing_sections, first_crossing
+from bladegen.airfoils.landmarks import landmarks
 from strategies import airfoils, circle
 
 

@@ -8,9 +8,9 @@ from numpy.polynomial import Polynomial
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
-from bladegen import cst
-from bladegen.affine import standardise
-from bladegen.landmarks import landmark_parameters, landmarks
+from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.shapes import cst
+from bladegen.shapes.affine import standardise
 from strategies import SEEDS, airfoils, naca
 
 U = landmark_parameters(101)

@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from bladegen.database import baselines, build_space
+from bladegen.airfoils.landmarks import landmarks
 from bladegen.errors import FileError
-from bladegen.landmarks import landmarks
-from bladegen.pga import ShapeSpace
-from bladegen.readers import bundled, read
-from bladegen.readers.airfoil_files import airfoil_folder, read_airfoil, read_folder
+from bladegen.formats.airfoils.reading import airfoil_folder, read_airfoil, read_folder
+from bladegen.formats.baselines import baselines
+from bladegen.formats.reading import bundled, read
+from bladegen.shapes.database import build_space
+from bladegen.shapes.shape_space import ShapeSpace
 from strategies import naca
 
 

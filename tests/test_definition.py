@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from bladegen.arrays import Array
-from bladegen.definition import (
+from bladegen.definition.blade_definition import (
     Airfoil,
     BladeDefinition,
     Distribution,
@@ -21,6 +20,7 @@ from bladegen.definition import (
     stations_by_thickness,
 )
 from bladegen.errors import DefinitionError
+from bladegen.support.arrays import Array
 from strategies import circle, ellipse
 
 GOLDEN = Path(__file__).parent / "golden" / "dtu10mw"

@@ -4,11 +4,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.cli.texts import finish
 from bladegen.errors import BladegenError, GeometryError
-from bladegen.landmarks import landmark_parameters, landmarks
-from bladegen.sections import SectionSplines
-from bladegen.texts import finish
 from strategies import airfoils, circle
 
 U = landmark_parameters(401)

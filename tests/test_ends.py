@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from bladegen import cad, ends, net
-from bladegen.blade import Blade
-from bladegen.edges import Sharp
-from bladegen.landmarks import landmark_parameters
-from bladegen.readers import bundled, read
-from bladegen.tips import flat_tip, on_arcs, round_tip
+from bladegen.airfoils.landmarks import landmark_parameters
+from bladegen.blade.blade import Blade
+from bladegen.blade.edges import Sharp
+from bladegen.cad import solids
+from bladegen.formats.reading import bundled, read
+from bladegen.surface import ends, net
+from bladegen.surface.tips import flat_tip, on_arcs, round_tip
 
 BLADE = Blade.from_definition(read("dtu10mw"), landmarks=101)
 NET, DEVIATION = net.fitted(BLADE, 1e-3)
@@ -28,7 +29,7 @@ def moved(rows, columns, shift):
 @pytest.mark.parametrize("tip", [flat_tip, round_tip])
 @pytest.mark.parametrize("name", bundled())
 def test_every_face_of_a_solid_is_measured(name, tip):
-    solid = cad.solid(Blade.from_definition(read(name), landmarks=201), tolerance=1e-3, tip=tip)
+    solid = solids.solid(Blade.from_definition(read(name), landmarks=201), tolerance=1e-3, tip=tip)
     assert list(solid.deviation.faces) == [face for face, _ in solid.faces]
     assert solid.deviation.maximum < 1e-3
     each = solid.deviation.faces.values()

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from bladegen.cli import app, main
+from bladegen.cli.commands import app, main
+from bladegen.cli.terminal import log_to_terminal, print_findings, print_table
 from bladegen.errors import BladegenError, DefinitionError, FileError, Finding, visible
-from bladegen.terminal import log_to_terminal, print_findings, print_table
 from strategies import circle, naca
 
 ACTING = (

@@ -4,10 +4,12 @@ import pyvista
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import cad, cad_files, exporters, mesh
+from bladegen.cad import exchange, solids
 from bladegen.errors import ExportError, SizeError, ToleranceError
-from bladegen.grid import Spacing
-from bladegen.tips import flat_tip, round_tip
+from bladegen.exports import exporters
+from bladegen.surface import mesh
+from bladegen.surface.grid import Spacing
+from bladegen.surface.tips import flat_tip, round_tip
 
 MESHES = [".stl", ".ply", ".glb", ".obj", ".3mf", ".vtp"]
 
@@ -114,12 +116,12 @@ def test_a_round_tip_is_on_meshes_and_grids_alike(blade):
 
 def test_step_by_suffix(blade, tmp_path):
     path = bg.export(blade, tmp_path / "blade.stp", sections=40)
-    assert cad.is_valid(cad_files.read_step(path))
+    assert solids.is_valid(exchange.read_step(path))
 
 
 def test_a_solid_that_misses_its_tolerance_is_kept_aside(blade, tmp_path, monkeypatch):
-    monkeypatch.setattr("bladegen.net.MAX_SECTIONS", 20)
-    monkeypatch.setattr("bladegen.net.FIRST_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.net.MAX_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.net.FIRST_SECTIONS", 20)
     with pytest.raises(ToleranceError, match=r"mm off the blade .* allowed is 0.01 mm; kept as"):
         bg.export(blade, tmp_path / "blade.step", tolerance=1e-5)
     assert [p.name for p in tmp_path.iterdir()] == ["blade.out-of-tolerance.step"]

@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
+from bladegen.airfoils.fairing import fair
+from bladegen.airfoils.landmarks import contour, oriented
 from bladegen.errors import GeometryError
-from bladegen.fairing import fair
-from bladegen.landmarks import contour, oriented
 from strategies import SEEDS, airfoils, circle, naca
 
 TOLERANCES = st.sampled_from([1e-6, 1e-5, 1e-4])

@@ -14,14 +14,16 @@ from numpy.testing import assert_allclose, assert_array_equal
 from processes import children, gone_within
 
 import bladegen as bg
-from bladegen import cad, cad_files, checks, mesh
+from bladegen.cad import exchange, solids
 from bladegen.errors import BladegenError, PerturbationError
-from bladegen.exporters import Options
-from bladegen.families import BLOCK
-from bladegen.family_files import FamilyFolder, sections_digest
-from bladegen.family_run import Order, run
-from bladegen.files import digest_of
-from bladegen.properties import volume
+from bladegen.exports.exporters import Options
+from bladegen.families.family import BLOCK
+from bladegen.families.folder import FamilyFolder, sections_digest
+from bladegen.families.run import Order, run
+from bladegen.measures import checks
+from bladegen.measures.properties import volume
+from bladegen.support.files import digest_of
+from bladegen.surface import mesh
 
 SPANS = 16
 COUNT = 3 * BLOCK + 9
@@ -92,7 +94,7 @@ def test_properties_are_those_of_the_sections(reference):
     family = planned()
     variant = family.variant(5)
     finished = variant.trailing_edge(variant.profiles(family.eta), variant.chord(family.eta))
-    from bladegen import polygons
+    from bladegen.airfoils import polygons
 
     wanted = polygons.measure(finished * variant.chord(family.eta)[:, None, None])
     assert_allclose(table["section_area_m2"][5], wanted[:, 0], rtol=1e-6)
@@ -155,7 +157,13 @@ def test_a_killed_process_is_replaced(reference, tmp_path):
     same(whole(target), whole(reference))
 
 
-COMMAND = [sys.executable, "-c", "from bladegen.cli import main; main()", "family", "dtu10mw"]
+COMMAND = [
+    sys.executable,
+    "-c",
+    "from bladegen.cli.commands import main; main()",
+    "family",
+    "dtu10mw",
+]
 ASKED = ["--count", str(COUNT), "--seed", "7", "--spans", str(SPANS)]
 
 
@@ -287,7 +295,7 @@ def test_files_of_each_variant_are_written_and_listed(tmp_path):
     for place, name in enumerate(table["step_file"]):
         path = tmp_path / "one" / name
         assert table["step_sha256"][place] == digest_of(path)
-        assert cad.is_valid(cad_files.read_step(path))
+        assert solids.is_valid(exchange.read_step(path))
         figures = checks.mesh_figures(mesh.read(path.with_suffix(".stl")))
         assert figures["watertight"]
         assert_allclose(

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bladegen.errors import ExportError, FileError
-from bladegen.files import (
+from bladegen.support.files import (
     alone,
     beginning_of,
     content_of,
@@ -45,7 +45,7 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
 def test_a_killed_writer_leaves_no_file_under_the_final_name(tmp_path):
     target = tmp_path / "a.txt"
     code = (
-        "import sys, time; from pathlib import Path; from bladegen.files import replacing\n"
+        "import sys, time; from pathlib import Path; from bladegen.support.files import replacing\n"
         "with replacing(Path(sys.argv[1])) as t:\n"
         "    t.write_text('half'); print('ready', flush=True); time.sleep(60)"
     )

@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.edges import AsGiven, MinimumThickness, Sharp
-from bladegen.smoothness import creases
+from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.measures.smoothness import creases
 
 BLADES = {name: bg.Blade.from_definition(bg.read(name), path="spline") for name in bg.bundled()}
 FINISHES = [AsGiven(), MinimumThickness(0.002), MinimumThickness(0.02), Sharp()]

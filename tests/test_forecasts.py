@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import bladegen as bg
-from bladegen import forecasts
 from bladegen.errors import FamilyError
-from bladegen.family_run import Order, run
-from bladegen.forecasts import Forecast, duration, free_bytes, require_room, size
+from bladegen.families import forecasts
+from bladegen.families.forecasts import Forecast, duration, free_bytes, require_room, size
+from bladegen.families.run import Order, run
 
 BLADE = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=51)
 BYTES = 16 * 51 * 3 * 4  # of a variant's sections

@@ -15,9 +15,11 @@ from foreign_fuzzing import FORMATS, good
 from fuzzing import fuzz
 from numpy.testing import assert_allclose
 
-from bladegen import checks, comparison, foreign, foreign_reader, mesh
 from bladegen.errors import BladegenError, CadError, FileError
-from bladegen.foreign import Answer, packed, unpacked
+from bladegen.measures import checks, foreign, foreign_reader
+from bladegen.measures.foreign import Answer, packed, unpacked
+from bladegen.surface import mesh
+from bladegen.views import comparison
 
 
 @pytest.fixture
@@ -120,7 +122,7 @@ def test_objects_are_not_unpickled(tmp_path):
 def test_a_child_works_within_its_limits_and_ends_with_its_parent(tmp_path):
     code = (
         "import os, resource, sys, time\n"
-        "from bladegen.foreign_reader import limit\n"
+        "from bladegen.measures.foreign_reader import limit\n"
         "child = os.fork()\n"
         "if child:\n"
         "    time.sleep(1.0)\n"
@@ -140,7 +142,7 @@ def test_a_child_works_within_its_limits_and_ends_with_its_parent(tmp_path):
 
 
 def test_an_orphan_does_not_begin():
-    code = "from bladegen.foreign_reader import limit; limit(100, 3 * 2**30, 1 << 30)"
+    code = "from bladegen.measures.foreign_reader import limit; limit(100, 3 * 2**30, 1 << 30)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 1
 
 

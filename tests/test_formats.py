@@ -10,12 +10,18 @@ from numpy.testing import assert_allclose, assert_array_equal
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import cli
-from bladegen.arrays import Array
-from bladegen.conventions import axis_of_line, curve_length, line_of_axis
-from bladegen.definition import Airfoil, BladeDefinition, Distribution, Rotor, Station
-from bladegen.redefinition import redefined
-from bladegen.resampling import MOST_NODES, common_grid, shape_grid
+from bladegen.cli import commands
+from bladegen.definition.blade_definition import (
+    Airfoil,
+    BladeDefinition,
+    Distribution,
+    Rotor,
+    Station,
+)
+from bladegen.definition.conventions import axis_of_line, curve_length, line_of_axis
+from bladegen.formats.common.redefinition import redefined
+from bladegen.formats.common.resampling import MOST_NODES, common_grid, shape_grid
+from bladegen.support.arrays import Array
 from strategies import definitions, few
 
 NAMES = ("dtu10mw", "iea15mw", "nrel5mw")
@@ -260,7 +266,7 @@ def test_a_shorter_blade_leaves_no_airfoils_of_the_longer_behind(tmp_path):
 
 
 def run(*arguments: object) -> str:
-    result = RUN.invoke(cli.app, [str(argument) for argument in arguments])
+    result = RUN.invoke(commands.app, [str(argument) for argument in arguments])
     assert result.exit_code == 0, (result.output, result.exception)
     return " ".join(result.output.split())
 

@@ -16,8 +16,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import bladegen as bg
-from bladegen import archive
 from bladegen.errors import BladegenError
+from bladegen.support import archive
 from strategies import few, naca
 
 
@@ -289,7 +289,7 @@ AIRFOILS = {
 
 @pytest.mark.parametrize("name", AIRFOILS)
 def test_bad_airfoil_files_are_refused_in_a_line(name, tmp_path):
-    from bladegen.readers.airfoil_files import read_airfoil
+    from bladegen.formats.airfoils.reading import read_airfoil
 
     content, said = AIRFOILS[name]
     path = tmp_path / "foil.dat"

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from bladegen import cad, cad_files
-from bladegen.blade import Blade
-from bladegen.mesh import TriangleMesh
-from bladegen.readers import bundled, read
-from bladegen.tips import flat_tip, round_tip
+from bladegen.blade.blade import Blade
+from bladegen.cad import exchange, solids
+from bladegen.formats.reading import bundled, read
+from bladegen.surface.mesh import TriangleMesh
+from bladegen.surface.tips import flat_tip, round_tip
 
 SIZE = 500.0  # mm
 
@@ -24,8 +24,8 @@ NAMES = [n if n == "nrel5mw" else pytest.param(n, marks=NIGHTLY) for n in bundle
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("tip", [flat_tip, round_tip])
 def test_gmsh_meshes_the_surface_of_one_volume(name, tip, tmp_path):
-    solid = cad.solid(Blade.from_definition(read(name)), tolerance=1e-3, tip=tip)
-    cad_files.write_step(solid, tmp_path / "blade.step")
+    solid = solids.solid(Blade.from_definition(read(name)), tolerance=1e-3, tip=tip)
+    exchange.write_step(solid, tmp_path / "blade.step")
     found = meshing.found(tmp_path / "blade.step", SIZE)
     assert found.volumes == 1
     made, qualities = TriangleMesh(found.vertices / 1e3, found.faces), found.qualities

@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen import grassmann as gr
 from bladegen.errors import GeometryError
+from bladegen.shapes import grassmann as gr
 from strategies import SEEDS, points, random_points, random_tangent, rotations
 
 

@@ -6,15 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen import mesh
-from bladegen.blade import Blade
-from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.blade.blade import Blade
+from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import GeometryError
-from bladegen.grid import Spacing, from_blade
-from bladegen.grid_files import welded
-from bladegen.grid_quality import areas, corner_angles, grid_figures, skewness
-from bladegen.readers import bundled, read
-from bladegen.tips import arcs, flat_tip, on_arcs, round_tip
+from bladegen.formats.reading import bundled, read
+from bladegen.surface import mesh
+from bladegen.surface.grid import Spacing, from_blade
+from bladegen.surface.grid_files import welded
+from bladegen.surface.grid_quality import areas, corner_angles, grid_figures, skewness
+from bladegen.surface.tips import arcs, flat_tip, on_arcs, round_tip
 from strategies import definitions, few
 
 TIPS = flat_tip, round_tip

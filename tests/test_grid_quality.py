@@ -1,8 +1,8 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from bladegen.grid import Block, Grid, Interface
-from bladegen.grid_quality import areas, corner_angles, grid_figures, skewness, stretching
+from bladegen.surface.grid import Block, Grid, Interface
+from bladegen.surface.grid_quality import areas, corner_angles, grid_figures, skewness, stretching
 
 
 def cells(x, y, shear=0.0):

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import writers
-from bladegen.checks import check_blade
-from bladegen.definition import Airfoil, Distribution, Station, pchip
-from bladegen.inflections import DEPTH, bends, inflections
+from bladegen.definition.blade_definition import Airfoil, Distribution, Station, pchip
+from bladegen.formats import writing
+from bladegen.measures.checks import check_blade
+from bladegen.measures.inflections import DEPTH, bends, inflections
 from strategies import naca
 
 GRID = np.linspace(0.0, 1.0, 401)
@@ -89,5 +89,5 @@ def test_a_bend_that_lies_elsewhere_is_no_other_bend():
 @pytest.mark.parametrize("name", bg.bundled())
 def test_a_converted_copy_has_no_inflection_that_its_source_has_not(name, tmp_path):
     """OpenFAST's files have a station at every node; the sources have no inflection."""
-    writers.write(bg.read(name), tmp_path / "copy.dat", format="openfast")
+    writing.write(bg.read(name), tmp_path / "copy.dat", format="openfast")
     assert inflections(bg.Blade.from_definition(bg.read(tmp_path / "copy.dat"))) == []

@@ -5,9 +5,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.interpolate import Akima1DInterpolator
 
-from bladegen import affine, grassmann
-from bladegen.definition import Distribution
-from bladegen.interpolation import (
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.blade.paths import (
     NOISE,
     GeodesicPath,
     Parameter,
@@ -16,7 +15,8 @@ from bladegen.interpolation import (
     geodesic_path,
     spline_path,
 )
-from bladegen.landmarks import landmarks
+from bladegen.definition.blade_definition import Distribution
+from bladegen.shapes import affine, grassmann
 from strategies import SEEDS, circle, maps, naca, random_points, random_tangent
 
 KNOTS = np.array([0.0, 0.2, 0.5, 0.6, 1.0])

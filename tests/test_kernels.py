@@ -14,13 +14,15 @@ from numba.core.caching import CacheImpl
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen import characteristics, compiled, kernels, plane_maps, polygons, sizes
-from bladegen.batch import SectionBatch
-from bladegen.crossing import crossing_sections
-from bladegen.deformation import AffineChange, Window
-from bladegen.edges import MinimumThickness
-from bladegen.landmarks import landmarks
-from bladegen.sections import SectionSplines
+from bladegen.airfoils import characteristics, plane_maps, polygons
+from bladegen.airfoils.crossing import crossing_sections
+from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.blade.deformation import AffineChange, Window
+from bladegen.blade.edges import MinimumThickness
+from bladegen.support import compiled
+from bladegen.variants import kernels, sizes
+from bladegen.variants.batch import SectionBatch
 from strategies import airfoils, box
 
 COUNT = 101
@@ -42,15 +44,15 @@ def loaded(module, **names):
 @cache
 def plain():
     """The kernels as plain Python."""
-    names = ("compiled", "plane_maps", "characteristics", "sizes")
-    known = {f"bladegen.{name}": sys.modules[f"bladegen.{name}"] for name in names}
+    modules = (compiled, plane_maps, characteristics, sizes)
+    known = {module.__name__: module for module in modules}
     numba.config.DISABLE_JIT = True
     try:
         decorator = loaded(compiled)
-        maps = loaded(plane_maps, **{"bladegen.compiled": decorator})
-        loaded_looks = loaded(characteristics, **{"bladegen.plane_maps": maps})
-        inner = loaded(sizes, **{"bladegen.characteristics": loaded_looks})
-        return loaded(kernels, **{"bladegen.sizes": inner})
+        maps = loaded(plane_maps, **{"bladegen.support.compiled": decorator})
+        loaded_looks = loaded(characteristics, **{"bladegen.airfoils.plane_maps": maps})
+        inner = loaded(sizes, **{"bladegen.airfoils.characteristics": loaded_looks})
+        return loaded(kernels, **{"bladegen.variants.sizes": inner})
     finally:
         numba.config.DISABLE_JIT = False
         sys.modules.update(known)
@@ -195,7 +197,7 @@ def _twice(x):
 
 
 def test_a_package_that_may_not_be_written_keeps_its_kernels_with_the_user(tmp_path):
-    code = "from bladegen import kernels; print(kernels.made.stats.cache_path)"
+    code = "from bladegen.variants import kernels; print(kernels.made.stats.cache_path)"
     run = subprocess.run(
         [sys.executable, "-c", code],
         env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},

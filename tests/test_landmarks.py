@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen import landmarks as lm
+from bladegen.airfoils import landmarks as lm
 from bladegen.errors import GeometryError
 from strategies import airfoils, circle, ellipse, naca
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 import bladegen as bg
-from bladegen.edges import MinimumThickness
-from bladegen.likeness import alike
-from bladegen.tips import flat_tip, round_tip
+from bladegen.blade.edges import MinimumThickness
+from bladegen.cli.likeness import alike
+from bladegen.surface.tips import flat_tip, round_tip
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,10 @@ import pytest
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import cli
-from bladegen.build import build
-from bladegen.exporters import Options
-from bladegen.family_run import Order, run
+from bladegen.cli import commands
+from bladegen.exports.build import build
+from bladegen.exports.exporters import Options
+from bladegen.families.run import Order, run
 
 LOGGER = logging.getLogger("bladegen")
 
@@ -85,14 +85,14 @@ def test_a_family_says_its_blocks_and_what_it_drew_again(blade, messages, tmp_pa
 
 def test_nothing_is_heard_unless_asked_for(quiet_again, tmp_path):
     command = ["convert", "nrel5mw", str(tmp_path / "blade.csv")]
-    plain = CliRunner().invoke(cli.app, command)
+    plain = CliRunner().invoke(commands.app, command)
     assert plain.exit_code == 0, plain.output
     assert "INFO" not in plain.stderr
     for _ in range(2):
-        told = CliRunner().invoke(cli.app, ["-v", *command])
+        told = CliRunner().invoke(commands.app, ["-v", *command])
         assert told.exit_code == 0, told.output
         assert "".join(told.stderr.split()).count("blade.csv,") == 1  # lines are wrapped
         assert "INFO" in told.stderr
         assert told.stdout == plain.stdout
-    CliRunner().invoke(cli.app, ["-vv", "list"])
+    CliRunner().invoke(commands.app, ["-vv", "list"])
     assert LOGGER.level == logging.DEBUG

@@ -15,14 +15,16 @@ from hypothesis import strategies as st
 from PIL import Image
 
 import bladegen as bg
-from bladegen import cad_files, checks, marks
-from bladegen.build import build, report_path
-from bladegen.exporters import FORMATS, Options, Products
-from bladegen.grid import Spacing
-from bladegen.inventory import made_by
-from bladegen.options import Kind
-from bladegen.provenance import Provenance, made_from, word
-from bladegen.tips import round_tip
+from bladegen.cad import exchange
+from bladegen.exports import marks
+from bladegen.exports.build import build, report_path
+from bladegen.exports.exporters import FORMATS, Options, Products
+from bladegen.exports.inventory import made_by
+from bladegen.exports.options import Kind
+from bladegen.exports.provenance import Provenance, made_from, word
+from bladegen.measures import checks
+from bladegen.surface.grid import Spacing
+from bladegen.surface.tips import round_tip
 
 SMALL = Spacing(around=33, along=9, edge=4, leading_edge=0.02, trailing_edge=0.02, root=0.1)
 SILENT = {".p3d", ".fmt"}  # PLOT3D has no place for words
@@ -45,7 +47,7 @@ def products(blade):
 
 @pytest.fixture(scope="module")
 def folder(products, tmp_path_factory):
-    from bladegen.exporters import write
+    from bladegen.exports.exporters import write
 
     target = tmp_path_factory.mktemp("all")
     for suffix in SUFFIXES:
@@ -114,7 +116,7 @@ def test_independent_readers_find_it(folder, products):
 @pytest.mark.parametrize("suffix", [".step", ".iges", ".brep"])
 def test_cad_files_are_read_as_before(folder, products, suffix):
     path = folder / f"a{suffix}"
-    figures = checks.solid_figures(cad_files.read(path), quick=True)
+    figures = checks.solid_figures(exchange.read(path), quick=True)
     assert figures["valid"]
     assert figures["faces"] == 5
     if suffix == ".step":

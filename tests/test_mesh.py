@@ -4,13 +4,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen import mesh
-from bladegen.blade import Blade
-from bladegen.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.blade.blade import Blade
+from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import GeometryError
-from bladegen.landmarks import landmarks
-from bladegen.readers import bundled, read
-from bladegen.tips import flat_tip, on_arcs, round_tip
+from bladegen.formats.reading import bundled, read
+from bladegen.surface import mesh
+from bladegen.surface.tips import flat_tip, on_arcs, round_tip
 from strategies import SEEDS, definitions, ellipse
 
 

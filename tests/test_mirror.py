@@ -8,13 +8,17 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import cad, checks, cli, exporters, mesh, net, properties
+from bladegen.cad import solids
+from bladegen.cad.rotor import rotor_of
+from bladegen.cli import commands
 from bladegen.errors import ExportError, FamilyError
-from bladegen.grid import Spacing
-from bladegen.grid import from_blade as grid_of
-from bladegen.preview.scene import scene_of
-from bladegen.rotor import rotor_of
-from bladegen.tips import flat_tip, round_tip
+from bladegen.exports import exporters
+from bladegen.measures import checks, properties
+from bladegen.surface import mesh, net
+from bladegen.surface.grid import Spacing
+from bladegen.surface.grid import from_blade as grid_of
+from bladegen.surface.tips import flat_tip, round_tip
+from bladegen.views.blade_scene import scene_of
 
 FLIP = np.array([1.0, -1.0, 1.0])
 
@@ -53,9 +57,9 @@ def test_meshes_are_mirrored_and_look_outward(blade, image, tip):
 
 
 def test_a_solid_is_mirrored_and_its_faces_keep_their_names(blade, image):
-    one, two = (cad.solid(b, tolerance=5e-3, sections=30) for b in (blade, image))
+    one, two = (solids.solid(b, tolerance=5e-3, sections=30) for b in (blade, image))
     assert two.volume == pytest.approx(one.volume, rel=1e-12)
-    assert cad.is_valid(two.shape)
+    assert solids.is_valid(two.shape)
     assert {name for name, _ in one.faces} == {name for name, _ in two.faces}
     assert two.deviation.maximum == pytest.approx(one.deviation.maximum, rel=1e-6)
     boxes = [
@@ -100,7 +104,7 @@ def test_the_command_mirrors_every_file_without_a_hub_radius(tmp_path):
     command = ["build", "dtu10mw", "-o", str(tmp_path), "--mirror", "--landmarks", "101"]
     asked = ["stl", "ply", "vtp", "sections.csv", "p3d"]
     asked = [word for suffix in asked for word in ("--format", suffix)]
-    done = CliRunner().invoke(cli.app, [*command, *asked, "--stations", "45"])
+    done = CliRunner().invoke(commands.app, [*command, *asked, "--stations", "45"])
     assert done.exit_code == 0, done.output
     assert "mirror image" in done.output
     names = {path.name for path in tmp_path.iterdir()}
@@ -116,7 +120,7 @@ def test_the_command_mirrors_every_file_without_a_hub_radius(tmp_path):
     one, two = (mesh.read(tmp_path / name) for name in ("plain.stl", "dtu10mw-mirrored.stl"))
     assert_allclose(two.bounds[:, 1], -one.bounds[::-1, 1], atol=1e-6)
     assert two.volume == pytest.approx(one.volume, rel=1e-6)
-    refused = CliRunner().invoke(cli.app, [*command, "--format", "yaml"])
+    refused = CliRunner().invoke(commands.app, [*command, "--format", "yaml"])
     assert isinstance(refused.exception, ExportError)
 
 

@@ -3,11 +3,11 @@ import pytest
 from hypothesis import given, settings
 from numpy.testing import assert_allclose
 
-from bladegen import net
-from bladegen.blade import Blade
-from bladegen.landmarks import landmark_parameters, landmarks
-from bladegen.net import fitted
-from bladegen.readers import bundled, read
+from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.blade.blade import Blade
+from bladegen.formats.reading import bundled, read
+from bladegen.surface import net
+from bladegen.surface.net import fitted
 from strategies import SEEDS, definitions, ellipse, few
 
 U = landmark_parameters(101)

@@ -44,6 +44,6 @@ def test_a_plain_blade_loads_nothing_that_draws():
     code = (
         "import sys, bladegen as bg;"
         "b = bg.Blade.from_definition(bg.read('nrel5mw'), landmarks=51); repr(b);"
-        "assert not {'matplotlib', 'bladegen.notebook', 'pyvista'} & set(sys.modules)"
+        "assert not {'matplotlib', 'bladegen.views.notebook', 'pyvista'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from bladegen import cli
-from bladegen.output import OutputError, guarded
+from bladegen.cli import commands
+from bladegen.cli.output import OutputError, guarded
 
 FULL = Path("/dev/full")
 COMMANDS = [["list"], ["--help"], ["--version"], ["info", "nrel5mw", "--json"], ["space", "info"]]
-CODE = "from bladegen.cli import main; main()"
+CODE = "from bladegen.cli.commands import main; main()"
 
 
 def command(arguments, **options):
@@ -29,7 +29,7 @@ def test_a_full_disk_is_one_line_and_exit_code_1(arguments, monkeypatch, capsys)
     with FULL.open("w") as full:
         monkeypatch.setattr(sys, "stdout", full)
         with pytest.raises(SystemExit) as end:
-            cli.main()
+            commands.main()
     assert end.value.code == 1
     said = capsys.readouterr().err
     assert said == "bladegen: standard output: cannot be written: No space left on device\n"
@@ -55,7 +55,7 @@ def test_a_command_without_standard_output_says_so(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["bladegen", "--version"])
     monkeypatch.setattr(sys, "stdout", None)
     with pytest.raises(SystemExit) as end:
-        cli.main()
+        commands.main()
     assert end.value.code == 1
     assert "Bad file descriptor" in capsys.readouterr().err
 

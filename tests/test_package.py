@@ -13,7 +13,7 @@ import bladegen
 
 ROOT = Path(bladegen.__file__).parent.parent
 BLADES = ("dtu10mw", "iea15mw", "nrel5mw")
-RUN = "import sys; from bladegen.cli import main; sys.argv[0] = 'bladegen'; main()"
+RUN = "import sys; from bladegen.cli.commands import main; sys.argv[0] = 'bladegen'; main()"
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def test_the_wheel_holds_blades_space_types_and_licence(dist):
     with zipfile.ZipFile(dist[0]) as wheel:
         names = set(wheel.namelist())
     assert {f"bladegen/blades/{name}.yaml" for name in BLADES} <= names
-    assert {"bladegen/data/reference.npz", "bladegen/py.typed"} <= names
+    assert {"bladegen/shapes/reference.npz", "bladegen/py.typed"} <= names
     assert any(name.endswith("licenses/LICENSE") for name in names)
     assert not any(name.startswith(("tests/", "docs/", "benchmarks/")) for name in names)
 

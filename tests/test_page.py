@@ -11,10 +11,9 @@ from numpy.testing import assert_allclose
 from playwright.sync_api import sync_playwright
 
 import bladegen as bg
-from bladegen import keys
 from bladegen.errors import RenderError
-from bladegen.preview import page
-from bladegen.preview.scene import scene_of
+from bladegen.views import keys, page
+from bladegen.views.blade_scene import scene_of
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 TWO_FRAMES = "new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))"

@@ -5,8 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.interpolate import BSpline
 
-from bladegen import cad_patches, distances, surfaces
-from bladegen.patches import Patch, inside, to_rims
+from bladegen.cad import face_patches
+from bladegen.measures import distances, surfaces
+from bladegen.measures.patches import Patch, inside, to_rims
 
 RNG = np.random.default_rng(4)
 
@@ -90,7 +91,7 @@ def body():
 
 
 def faces_of(body):
-    return surfaces.of_faces(cad_patches.faces(body.val().wrapped)[0])
+    return surfaces.of_faces(face_patches.faces(body.val().wrapped)[0])
 
 
 def test_trimmed_faces_are_exact(body):
@@ -118,7 +119,7 @@ def test_a_body_is_no_distance_from_itself_and_a_millimetre_from_a_copy(body):
 
 def test_faces_without_splines_are_triangles(body, monkeypatch):
     exact = faces_of(body)
-    monkeypatch.setattr(cad_patches, "_patch", lambda _: {})
+    monkeypatch.setattr(face_patches, "_patch", lambda _: {})
     flat = faces_of(body)
     assert flat.patches == ()
     assert np.abs(distances.between(flat, exact)[1]).max() < 1e-4

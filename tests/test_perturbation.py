@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import affine, grassmann
-from bladegen.crossing import crossing_sections
-from bladegen.deformation import AffineChange
+from bladegen.airfoils.crossing import crossing_sections
+from bladegen.blade.deformation import AffineChange
+from bladegen.blade.perturbation import SOUND_SPANS
 from bladegen.errors import PerturbationError
-from bladegen.perturbation import SOUND_SPANS
+from bladegen.shapes import affine, grassmann
 from strategies import definitions, few
 
 SPACE = bg.ShapeSpace.bundled()
@@ -135,7 +135,8 @@ def test_twist_and_scalings_act_on_the_distributions(twist, chords, twists, bend
 
 
 def test_a_perturbed_blade_is_a_blade_like_any_other(blades, tmp_path):
-    from bladegen import cad, checks
+    from bladegen.cad import solids
+    from bladegen.measures import checks
 
     variant = blades["iea15mw"].perturbed(SPACE, T, thickness=1.05, name="variant")
     assert variant.name == "variant"
@@ -145,7 +146,7 @@ def test_a_perturbed_blade_is_a_blade_like_any_other(blades, tmp_path):
     assert check.problems == ()
     assert check.figures["thickness_error"] < 1e-9
     assert check.figures["stations_missed_by_chord"] < 1e-9
-    solid = cad.solid(variant)
+    solid = solids.solid(variant)
     assert solid.deviation.maximum < 0.3e-3
     again = variant.perturbed(twist_scale=1.1)
     assert len(again.changes) == 2
@@ -225,8 +226,8 @@ def test_a_blade_as_it_is_defined_is_sound(blades):
 
 
 def test_deformations_that_eat_the_thickness_are_named(blades, monkeypatch):
-    monkeypatch.setattr("bladegen.perturbation.LOST_THICKNESS", 1.5)
-    monkeypatch.setattr("bladegen.perturbation.crossing_sections", lambda _: [])
+    monkeypatch.setattr("bladegen.blade.perturbation.LOST_THICKNESS", 1.5)
+    monkeypatch.setattr("bladegen.blade.perturbation.crossing_sections", lambda _: [])
     with pytest.raises(PerturbationError, match="loses its thickness with pga"):
         blades["nrel5mw"].perturbed(
             SPACE, -np.array([0.1, 0.1, 0.0, 0.0]), allow_extrapolation=True

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import affine, grassmann
-from bladegen.database import baselines
+from bladegen.airfoils.landmarks import clustered, cosine, landmark_parameters, landmarks
 from bladegen.errors import GeometryError, SpaceError
-from bladegen.landmarks import clustered, cosine, landmark_parameters, landmarks
-from bladegen.pga import ShapeSpace
+from bladegen.formats.baselines import baselines
+from bladegen.shapes import affine, grassmann
+from bladegen.shapes.shape_space import ShapeSpace
 from strategies import SEEDS, random_points, random_tangent
 
 
@@ -135,7 +135,7 @@ def test_damaged_and_foreign_files_are_refused(tmp_path):
 
 
 def test_files_that_are_too_large_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("bladegen.archive.MAX_BYTES", 10)
+    monkeypatch.setattr("bladegen.support.archive.MAX_BYTES", 10)
     (tmp_path / "big.npz").write_bytes(b"x" * 11)
     with pytest.raises(SpaceError, match="larger than 10 bytes"):
         ShapeSpace.load(tmp_path / "big.npz")
@@ -166,7 +166,7 @@ def test_wrong_coordinates_are_refused():
 
 
 def test_a_mean_that_does_not_converge_is_said(monkeypatch):
-    monkeypatch.setattr("bladegen.pga.STEPS", 1)
+    monkeypatch.setattr("bladegen.shapes.shape_space.STEPS", 1)
     with pytest.raises(GeometryError, match="not converged after 1 steps"):
         ShapeSpace.fit(cloud(1), modes=2)
 

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from numpy.testing import assert_allclose
 
-from bladegen.definition import BladeDefinition, Distribution, ReferenceAxis
-from bladegen.planform import Planform, normal_to_axis, normal_to_z, placement
+from bladegen.blade.planform import Planform, normal_to_axis, normal_to_z, placement
+from bladegen.definition.blade_definition import BladeDefinition, Distribution, ReferenceAxis
 from strategies import definitions
 
 ETA = np.linspace(0.0, 1.0, 33)
@@ -53,7 +53,7 @@ def test_frames_normal_to_z_stay():
 
 
 def blade(**changes) -> BladeDefinition:
-    from bladegen.definition import Airfoil, Station
+    from bladegen.definition.blade_definition import Airfoil, Station
     from strategies import circle
 
     round_ = Airfoil("circle", circle())

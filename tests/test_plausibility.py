@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import bladegen as bg
-from bladegen.definition import Airfoil, Distribution
-from bladegen.plausibility import doubts
+from bladegen.definition.blade_definition import Airfoil, Distribution
+from bladegen.definition.plausibility import doubts
 
 
 @pytest.fixture(scope="module")

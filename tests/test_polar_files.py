@@ -15,15 +15,15 @@ from refusals import findings, problems
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import cli
-from bladegen.blending import Between, between, completed, of_their_own
-from bladegen.definition import Airfoil, BladeDefinition, Distribution, Station
-from bladegen.polars import BORROWED, Polar
-from bladegen.readers.airfoil_info import Columns
-from bladegen.readers.airfoil_info import polars as read_tables
-from bladegen.readers.document import Notes
-from bladegen.readers.hawc2_polars import profile_sets as read_sets
-from bladegen.writers.into import write_into
+from bladegen.airfoils.polars import BORROWED, Polar
+from bladegen.cli import commands
+from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distribution, Station
+from bladegen.definition.blending import Between, between, completed, of_their_own
+from bladegen.formats.common.document import Notes
+from bladegen.formats.hawc2.polar_reading import profile_sets as read_sets
+from bladegen.formats.into import write_into
+from bladegen.formats.openfast.polar_reading import Columns
+from bladegen.formats.openfast.polar_reading import polars as read_tables
 from strategies import few, naca
 
 ALPHA = np.radians(np.arange(-180.0, 181.0, 20.0))
@@ -301,7 +301,7 @@ def test_a_turbine_file_leads_to_its_blade(turbine):
     assert made.rotor.tilt == pytest.approx(np.radians(5.0))
     assert lift(made, 0.5) == pytest.approx(lift(with_polars(4e6), 0.5), abs=0.01)
     assert "TipRad" not in findings(made)
-    result = CliRunner().invoke(cli.app, ["info", str(turbine)])
+    result = CliRunner().invoke(commands.app, ["info", str(turbine)])
     assert result.exit_code == 0, result.output
 
 
@@ -373,7 +373,7 @@ def test_a_blade_goes_back_into_a_model(turbine):
     changed = with_polars(4e6, 8e6)
     source = turbine.with_name("variant.yaml")
     bg.write(replace(changed, chord=Distribution.constant(2.0)), source)
-    result = run(cli.app, ["convert", str(source), str(main), "--into", str(main)])
+    result = run(commands.app, ["convert", str(source), str(main), "--into", str(main)])
     assert result.exit_code == 0, result.output
     assert "structure" in result.output
     written = main.read_bytes()
@@ -659,16 +659,16 @@ def test_a_blade_goes_back_into_an_htc_file(tmp_path):
 
 def test_the_option_polars_rules_openfast_and_hawc2(tmp_path, monkeypatch):
     pytest.importorskip("neuralfoil")
-    monkeypatch.setattr("bladegen.estimates.MODEL", "xxsmall")  # quick
+    monkeypatch.setattr("bladegen.definition.estimates.MODEL", "xxsmall")  # quick
     run = CliRunner().invoke
     for suffix in ("dat", "htc"):
         target = str(tmp_path / f"blade.{suffix}")
-        result = run(cli.app, ["convert", "nrel5mw", target, "--polars", "estimate"])
+        result = run(commands.app, ["convert", "nrel5mw", target, "--polars", "estimate"])
         assert result.exit_code == 0, result.output
         said = " ".join(result.output.split())
         assert ("blade_AeroDyn_part.dat" if suffix == "dat" else "sets in blade_pc.dat") in said
         made = bg.read(target)
         assert all(s.airfoil.polars[0].is_estimate for s in made.stations)
-        result = run(cli.app, ["convert", "nrel5mw", target, "--polars", "keep"])
+        result = run(commands.app, ["convert", "nrel5mw", target, "--polars", "keep"])
         assert "polars are not written: there are none" in " ".join(result.output.split())
         assert not any(s.airfoil.polars for s in bg.read(target).stations)

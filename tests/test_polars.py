@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import estimates
-from bladegen.definition import Airfoil, Station
+from bladegen.airfoils.polars import BORROWED, Polar, blended
+from bladegen.airfoils.viterna import extended, normal_moment
+from bladegen.definition import estimates
+from bladegen.definition.blade_definition import Airfoil, Station
 from bladegen.errors import BladegenError, DefinitionError
-from bladegen.extension import extended, normal_moment
-from bladegen.polars import BORROWED, Polar, blended
-from bladegen.readers.document import Node, Notes
-from bladegen.readers.polars import polars as read_polars
-from bladegen.readers.yaml_file import load_yaml
+from bladegen.formats.common.document import Node, Notes
+from bladegen.formats.common.polars import polars as read_polars
+from bladegen.formats.windio.yaml_file import load_yaml
 from strategies import circle, naca
 
 

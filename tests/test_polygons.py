@@ -5,8 +5,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import mesh, polygons
-from bladegen.properties import volume
+from bladegen.airfoils import polygons
+from bladegen.measures.properties import volume
+from bladegen.surface import mesh
 
 
 def rectangle(width, height, x=0.0, y=0.0):

@@ -5,9 +5,9 @@ import pytest
 from PIL import Image
 
 import bladegen as bg
-from bladegen import preview
 from bladegen.errors import RenderError
-from bladegen.preview.picture import _round_step
+from bladegen.views import preview
+from bladegen.views.picture import _round_step
 
 
 @pytest.fixture(scope="module")

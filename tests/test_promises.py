@@ -14,14 +14,18 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 import bladegen as bg
-from bladegen import affine, cad, combs, cst, grid, grid_quality, properties
-from bladegen.database import baselines
-from bladegen.edges import MinimumThickness
-from bladegen.fairing import fair
-from bladegen.inflections import inflections
-from bladegen.landmarks import landmarks, oriented
-from bladegen.smoothness import creases, edge_bulges, edge_widths
-from bladegen.tips import flat_tip, round_tip
+from bladegen.airfoils.fairing import fair
+from bladegen.airfoils.landmarks import landmarks, oriented
+from bladegen.blade.edges import MinimumThickness
+from bladegen.cad import solids
+from bladegen.formats.baselines import baselines
+from bladegen.measures import properties
+from bladegen.measures.inflections import inflections
+from bladegen.measures.smoothness import creases, edge_bulges, edge_widths
+from bladegen.shapes import affine, cst
+from bladegen.surface import grid, grid_quality
+from bladegen.surface.tips import flat_tip, round_tip
+from bladegen.views import combs
 
 PAGES = Path(__file__).parents[1] / "docs"
 NAMES = {"DTU 10 MW": "dtu10mw", "IEA 15 MW": "iea15mw", "NREL 5 MW": "nrel5mw"}
@@ -167,7 +171,7 @@ def test_bulges_and_inflections_are_as_many_as_the_page_says(row):
 def test_solids_are_as_the_page_says(row):
     for how, said in zip((None, 1e-5), row[3:5], strict=True):
         poles, _, off = said.split(", ")
-        solid = cad.solid(
+        solid = solids.solid(
             blade(row[0], row[1], fairing=how), tolerance=1e-3 * float(row[2].split()[0])
         )
         assert solid.net.poles.size / 3 == float(poles.replace(",", ""))
@@ -193,7 +197,7 @@ def test_grids_are_as_good_as_the_page_says(row):
 def test_volumes_are_those_of_the_sections_as_the_guide_says(said):
     for tolerance in (0.05e-3, 1e-3):
         made = blade(said)
-        solid = cad.solid(made, tolerance=tolerance)
+        solid = solids.solid(made, tolerance=tolerance)
         assert_allclose(solid.net.volume(), properties.volume(made), rtol=5e-6)
 
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import bladegen as bg
-from bladegen.definition import Airfoil, Distribution, Station
+from bladegen.definition.blade_definition import Airfoil, Distribution, Station
 from bladegen.errors import ExportError, Finding
-from bladegen.writers import FORMATS
-from bladegen.writers.into import write_into
-from bladegen.writers.proof import compared, proven, put_in_place, taken_back
+from bladegen.formats.into import write_into
+from bladegen.formats.proof import compared, proven, put_in_place, taken_back
+from bladegen.formats.writing import FORMATS
 from strategies import naca
 
 
@@ -39,7 +39,7 @@ def test_what_cannot_be_read_back_is_not_written(tmp_path, small, format_, monke
     def refuse(draft):
         raise bg.errors.FileError(str(draft), ["chord: is nonsense"])
 
-    monkeypatch.setattr("bladegen.writers.proof.read", refuse)
+    monkeypatch.setattr("bladegen.formats.proof.read", refuse)
     with pytest.raises(ExportError, match=r"not written, for it could not be read back: chord"):
         bg.write(replace(small, chord=Distribution.constant(2.0)), path, format=format_)
     assert {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()} == before

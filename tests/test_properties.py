@@ -6,13 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen.blade import Blade
-from bladegen.definition import Distribution, ReferenceAxis
-from bladegen.edges import AsGiven
-from bladegen.landmarks import landmark_parameters, landmarks
-from bladegen.planform import normal_to_axis, normal_to_z
-from bladegen.properties import area_moments, volume
-from bladegen.readers import bundled, read
+from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.blade.blade import Blade
+from bladegen.blade.edges import AsGiven
+from bladegen.blade.planform import normal_to_axis, normal_to_z
+from bladegen.definition.blade_definition import Distribution, ReferenceAxis
+from bladegen.formats.reading import bundled, read
+from bladegen.measures.properties import area_moments, volume
 from strategies import airfoils, ellipse
 
 U = landmark_parameters(401)
@@ -72,7 +72,7 @@ def test_sheared_pipe_has_the_volume_of_its_height():
 
 @pytest.mark.parametrize("name", bundled())
 def test_volume_is_that_of_a_fine_mesh(name):
-    from bladegen import mesh
+    from bladegen.surface import mesh
 
     blade = Blade.from_definition(read(name))
     exact = volume(blade)

@@ -6,11 +6,11 @@ from numpy.testing import assert_allclose
 from published_formats import GOLDEN, column, hawc2, openfast, windio
 
 import bladegen as bg
-from bladegen import estimates
-from bladegen.arrays import Array
-from bladegen.conventions import slope_degrees
-from bladegen.definition import BladeDefinition
-from bladegen.readers import BY_AIRFOILS
+from bladegen.definition import estimates
+from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.definition.conventions import slope_degrees
+from bladegen.formats.reading import BY_AIRFOILS
+from bladegen.support.arrays import Array
 
 
 def line(definition: BladeDefinition, z: Array, fraction: float) -> Array:

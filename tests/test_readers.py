@@ -16,11 +16,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from bladegen import readers
-from bladegen.definition import BladeDefinition
+from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import BladegenError, FileError
-from bladegen.readers import BY_AIRFOILS, yaml_file
-from bladegen.readers.document import Node, Notes, Range
+from bladegen.formats import reading
+from bladegen.formats.common.document import Node, Notes, Range
+from bladegen.formats.reading import BY_AIRFOILS
+from bladegen.formats.windio import yaml_file
 from strategies import circle, ellipse, few
 
 DELETE = object()
@@ -147,7 +148,7 @@ def path(tmp_path: Path) -> Path:
 def read(document: Any, path: Path) -> BladeDefinition:
     text = document if isinstance(document, bytes) else yaml.dump(document, Dumper=DUMPER).encode()
     path.write_bytes(text)
-    return readers.read(path)
+    return reading.read(path)
 
 
 DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
@@ -481,9 +482,9 @@ def test_every_turbine_of_windio_is_read():
     examples = pytest.importorskip("windIO.examples.turbine")
     home = Path(examples.__file__).parent
     for name, length in (("IEA-15-240-RWT", 117.0), ("IEA-22-280-RWT", 137.8)):
-        definition = readers.read(home / f"{name}.yaml")
+        definition = reading.read(home / f"{name}.yaml")
         assert_allclose(definition.length, length, rtol=1e-9)
-    ours, theirs = readers.read("iea15mw"), readers.read(home / "IEA-15-240-RWT.yaml")
+    ours, theirs = reading.read("iea15mw"), reading.read(home / "IEA-15-240-RWT.yaml")
     assert_array_equal(ours.chord.values, theirs.chord.values)
     assert_array_equal(ours.twist.values, theirs.twist.values)
     eta = np.linspace(0, 1, 201)
@@ -501,10 +502,10 @@ def test_without_libyaml_the_same_is_read(path, monkeypatch):
 
 def test_reading_does_not_import_scipy():
     code = (
-        "import sys; from bladegen.readers import read; read('iea15mw');"
+        "import sys; from bladegen.formats.reading import read; read('iea15mw');"
         "sys.exit('scipy' in sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(readers.__file__).parents[2])
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(reading.__file__).parents[2])
 
 
 # ---- what is refused --------------------------------------------------------------------------
@@ -805,14 +806,14 @@ def test_size_and_number_of_values_are_bounded(path, monkeypatch):
 @pytest.mark.parametrize("name", ["iea16mw", "../blades/iea15mw", "/dev/null", "x" * 5000, "a\0b"])
 def test_what_is_neither_blade_nor_file_is_answered_with_the_bundled_names(name):
     with pytest.raises(FileError, match="bundled blades are dtu10mw, iea15mw, nrel5mw") as raised:
-        readers.read(name)
+        reading.read(name)
     assert raised.value.source == name
 
 
 @pytest.mark.parametrize(("name", "words"), [("", "name of a bundled blade"), (".", "is a folder")])
 def test_no_name_and_a_folder_are_answered_with_what_to_give(name, words):
     with pytest.raises(FileError, match=words):
-        readers.read(name)
+        reading.read(name)
 
 
 def test_other_suffixes_are_refused(tmp_path):
@@ -827,7 +828,7 @@ def test_a_file_that_may_not_be_read_is_refused(path, monkeypatch):
     path.write_text("a: 1", encoding="utf-8")
     monkeypatch.setattr(os, "open", refuse)
     with pytest.raises(FileError, match="cannot be read: Permission denied"):
-        readers.read(path)
+        reading.read(path)
     monkeypatch.undo()
     with pytest.raises(yaml_file.YamlError, match="no regular file"):
         yaml_file.load_yaml(path.parent)
@@ -904,7 +905,7 @@ def answer(text: bytes, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "odd.yaml"
     path.write_bytes(text)
     try:
-        given = readers.read(path).source
+        given = reading.read(path).source
     except BladegenError as error:
         given = str(error)
     assert given.startswith(str(path))

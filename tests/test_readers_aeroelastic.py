@@ -10,8 +10,8 @@ from refusals import findings, problems
 
 import bladegen as bg
 from bladegen.errors import FileError
-from bladegen.readers import text_file
-from bladegen.readers.hawc2_model import finder
+from bladegen.formats.common import text_file
+from bladegen.formats.hawc2.model import finder
 
 
 def edit(path: Path, old: str, new: str, count: int = 1) -> Path:
@@ -247,7 +247,7 @@ def test_names_of_a_model_at_the_top_of_a_disk_lead_below_it_only(monkeypatch):
     def referred(name, bases, below=None):
         reached.append((bases, below))
 
-    monkeypatch.setattr("bladegen.readers.hawc2_model.referred", referred)
+    monkeypatch.setattr("bladegen.formats.hawc2.model.referred", referred)
     for path in ("/models/one/htc/a.htc", "/one/htc/a.htc", "/htc/a.htc"):
         finder(Path(path))("b.htc")
     one = [Path("/one/htc"), Path("/one")]

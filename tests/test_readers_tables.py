@@ -13,8 +13,8 @@ from refusals import findings, problems
 
 import bladegen as bg
 from bladegen.errors import FileError
-from bladegen.readers import workbook
-from bladegen.readers.text_file import natural, number, referred
+from bladegen.formats.common import workbook
+from bladegen.formats.common.text_file import natural, number, referred
 from strategies import circle, naca
 
 TABLE = """Spanwise position [r/R],Span [m],Chord (m),Twist [deg],Thickness [%],Airfoil name,Mass

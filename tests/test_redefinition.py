@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import redefinition
-from bladegen.definition import Distribution, Station
-from bladegen.landmarks import contour
-from bladegen.polars import Polar
-from bladegen.redefinition import redefined, sampled
+from bladegen.airfoils.landmarks import contour
+from bladegen.airfoils.polars import Polar
+from bladegen.definition.blade_definition import Distribution, Station
+from bladegen.formats.common import redefinition
+from bladegen.formats.common.redefinition import redefined, sampled
 
 T = (0.06, -0.05, 0.03, 0.02)
 
@@ -89,7 +89,7 @@ def test_without_a_thickness_distribution_the_airfoils_own_carries_it(blade):
 
 
 def test_a_pitch_axis_takes_the_noses_too_and_tolerances_end_somewhere(blade, monkeypatch):
-    from bladegen import redefinition
+    from bladegen.formats.common import redefinition
 
     centred = replace(
         blade.definition, pitch_axis=Distribution.constant(0.35), section_offset_y=None

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from bladegen.errors import RenderError
-from bladegen.preview import renderer
+from bladegen.views import renderer
 
 RENDER = (
-    "import sys; from pathlib import Path; import bladegen as bg; from bladegen import preview\n"
+    "import sys; from pathlib import Path; import bladegen as bg\n"
+    "from bladegen.views import preview\n"
     "blade = bg.Blade.from_definition(bg.read('nrel5mw'), landmarks=51)\n"
     "try:\n    preview.picture(blade, Path(sys.argv[1]), size=(640, 360))\n"
     "except bg.BladegenError as error:\n    print(error); sys.exit(1)"

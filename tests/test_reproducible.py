@@ -14,7 +14,7 @@ import pytest
 FORMATS = ("stl", "glb", "ply", "obj", "3mf", "vtp", "brep", "iges", "step")
 RUN = """
 import sys, time
-from bladegen.cli import app
+from bladegen.cli.commands import app
 folder, formats = sys.argv[1], sys.argv[2].split(",")
 asked = [word for suffix in formats for word in ("--format", suffix)]
 small = ["--landmarks", "101", "--stations", "40", "--tolerance", "5mm"]

@@ -5,11 +5,12 @@ import pytest
 import trimesh
 from numpy.testing import assert_allclose
 
-from bladegen import cad, cad_files, mesh
-from bladegen.blade import Blade
+from bladegen.blade.blade import Blade
+from bladegen.cad import exchange, solids
+from bladegen.cad.rotor import rotor_of, write_glb, write_step
 from bladegen.errors import CadError
-from bladegen.readers import read
-from bladegen.rotor import rotor_of, write_glb, write_step
+from bladegen.formats.reading import read
+from bladegen.surface import mesh
 
 
 @pytest.fixture(scope="module")
@@ -59,21 +60,21 @@ def test_leading_edges_go_first_clockwise_seen_from_upwind(blade, tmp_path, mirr
 
 
 def test_the_assembly_has_named_parts_that_are_valid(blade, tmp_path):
-    solid = cad.solid(blade, sections=40)
+    solid = solids.solid(blade, sections=40)
     rotor = rotor_of(blade)
     path = tmp_path / "rotor.step"
     write_step(rotor, solid, path)
     text = path.read_text()
     for name in ("blade 1", "blade 2", "blade 3", "spinner"):
         assert f"'{name}'" in text
-    shape = cad_files.read(path)
-    assert cad.is_valid(shape)
+    shape = exchange.read(path)
+    assert solids.is_valid(shape)
     from OCP.TopAbs import TopAbs_SOLID
     from OCP.TopExp import TopExp_Explorer
 
     found, explorer = [], TopExp_Explorer(shape, TopAbs_SOLID)
     while explorer.More():
-        found.append(cad.quick_volume(explorer.Current()) / 1e9)
+        found.append(solids.quick_volume(explorer.Current()) / 1e9)
         explorer.Next()
     assert len(found) == 4
     assert_allclose(found[:3], solid.net.volume(), rtol=1e-3)

@@ -5,11 +5,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import mesh
 from bladegen.errors import RenderError
-from bladegen.preview import scene
-from bladegen.preview.cameras import ANGLE, VIEWS, View, camera
-from bladegen.preview.drawing import cuts, polylines, shaded, signed_distances
+from bladegen.surface import mesh
+from bladegen.views import blade_scene, scene
+from bladegen.views.cameras import ANGLE, VIEWS, View, camera
+from bladegen.views.drawing import cuts, polylines, shaded, signed_distances
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def test_mean_curvature_of_a_cylinder_on_any_grid(radius, other, bend):
         np.broadcast_arrays(radius * np.sin(angle), radius * np.cos(angle), other * eta[:, None]),
         axis=-1,
     )
-    found = scene.mean_curvature(points, eta, u)
+    found = blade_scene.mean_curvature(points, eta, u)
     assert_allclose(found[:, 5:-5], 0.5 / radius, rtol=5e-3)
 
 
@@ -42,13 +42,13 @@ def test_mean_curvature_of_a_sphere_and_of_its_inside():
         axis=-1,
     )
     inner = slice(2, -2), slice(2, -2)
-    assert_allclose(scene.mean_curvature(points, eta, u)[inner], 1 / 3, rtol=5e-3)
+    assert_allclose(blade_scene.mean_curvature(points, eta, u)[inner], 1 / 3, rtol=5e-3)
     mirrored = points * [1.0, -1.0, 1.0]
-    assert_allclose(scene.mean_curvature(mirrored, eta, u)[inner], -1 / 3, rtol=5e-3)
+    assert_allclose(blade_scene.mean_curvature(mirrored, eta, u)[inner], -1 / 3, rtol=5e-3)
 
 
 def test_a_root_of_nrel_5_mw_is_curved_as_its_radius(blade):
-    found = scene.scene_of(blade, sections=80)
+    found = blade_scene.scene_of(blade, sections=80)
     root = found.surface.vertices[:, 2] < 1.0
     values = found.field("curvature").values[root]
     assert np.median(values) == pytest.approx(1 / blade.chord(0.0), rel=0.01)
@@ -56,26 +56,26 @@ def test_a_root_of_nrel_5_mw_is_curved_as_its_radius(blade):
 
 def test_fields_belong_to_vertices_and_distances_have_the_baselines_sign(blade):
     thicker = blade.perturbed(thickness=1.2)
-    found = scene.scene_of(thicker, blade, sections=60)
+    found = blade_scene.scene_of(thicker, blade, sections=60)
     field = found.field("distance")
     assert len(field.values) == len(found.surface.vertices)
     assert field.values.max() > 50  # mm; a fifth of some hundred millimetres on either side
     assert np.abs(field.values[found.surface.vertices[:, 2] < 1.0]).max() < 1.0
     assert field.low == -field.high
     assert found.names == ("wireframe", "sections", "stations", "frame", "baseline")
-    back = scene.scene_of(blade, thicker, sections=60).field("distance")
+    back = blade_scene.scene_of(blade, thicker, sections=60).field("distance")
     assert np.median(back.values) < 0 < np.median(field.values)
 
 
 def test_without_a_baseline_there_are_no_distances(blade):
-    found = scene.scene_of(blade, sections=60)
+    found = blade_scene.scene_of(blade, sections=60)
     assert [field.name for field in found.fields] == ["curvature"]
     with pytest.raises(RenderError, match="colour: got 'distance', allowed are plain"):
         found.field("distance")
 
 
 def test_a_perturbed_blade_says_so(blade):
-    found = scene.scene_of(blade.perturbed(twist=0.01, name="turned"), blade, sections=60)
+    found = blade_scene.scene_of(blade.perturbed(twist=0.01, name="turned"), blade, sections=60)
     assert found.title == "NREL 5 MW, perturbed: turned"
     assert "61.5 m long" in found.caption
 
@@ -95,7 +95,7 @@ def test_colours_reach_a_round_number_above_most_of_the_area(values, share):
 
 
 def test_a_page_takes_fewer_landmarks_and_keeps_ends_and_nose():
-    assert [scene._step(n, 201) for n in (101, 201, 401, 801, 203, 403)] == [1, 1, 2, 4, 1, 1]
+    assert [blade_scene._step(n, 201) for n in (101, 201, 401, 801, 203, 403)] == [1, 1, 2, 4, 1, 1]
 
 
 @given(st.sampled_from(sorted(VIEWS)), st.floats(0.4, 4.0), st.integers(0, 1000))
@@ -139,7 +139,7 @@ def test_polylines_keep_their_points():
 
 
 def test_shading_splits_edges_and_keeps_values(blade):
-    found = scene.scene_of(blade, sections=40)
+    found = blade_scene.scene_of(blade, sections=40)
     shown = shaded(found.surface, found.fields)
     assert shown.n_points > len(found.surface.vertices)
     assert shown.n_cells == len(found.surface.faces)

@@ -4,9 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.errors import GeometryError
-from bladegen.landmarks import landmark_parameters, landmarks
-from bladegen.sections import SectionSplines
 from strategies import airfoils, box, circle, ellipse, four_digit
 
 U = landmark_parameters(401)

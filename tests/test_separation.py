@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
-from bladegen.landmarks import landmarks
-from bladegen.separation import graphs, ladders, once_back_and_forth
+from bladegen.airfoils.landmarks import landmarks
+from bladegen.airfoils.separation import graphs, ladders, once_back_and_forth
 from strategies import airfoils, circle
 
 

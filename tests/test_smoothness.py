@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.smoothness import creases
+from bladegen.measures.smoothness import creases
 
 
 def blade(name, path, **options):

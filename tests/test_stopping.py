@@ -8,16 +8,16 @@ import time
 import pytest
 from processes import gone_within, running
 
-from bladegen import cli
-from bladegen.stopping import Stopped, stopped_by_signals
+from bladegen.cli import commands
+from bladegen.support.stopping import Stopped, stopped_by_signals
 
-MAIN = [sys.executable, "-c", "from bladegen.cli import main; main()"]
+MAIN = [sys.executable, "-c", "from bladegen.cli.commands import main; main()"]
 WORKER = """
 import ctypes, os
 from multiprocessing import get_context
 
 def holding(parent):
-    from bladegen.orphans import end_with
+    from bladegen.support.workers import end_with
 
     end_with(parent)
     print(os.getpid(), flush=True)
@@ -55,9 +55,9 @@ def test_a_signal_is_said_in_a_line_and_handlers_are_put_back(
     monkeypatch, capsys, number, words, status
 ):
     before = signal.getsignal(number)
-    monkeypatch.setattr(cli, "app", lambda: signal.raise_signal(number))
+    monkeypatch.setattr(commands, "app", lambda: signal.raise_signal(number))
     with pytest.raises(SystemExit, match=str(status)):
-        cli.main()
+        commands.main()
     assert capsys.readouterr().err == f"bladegen: {words}\n"
     assert signal.getsignal(number) is before
 

@@ -6,10 +6,10 @@ import pytest
 from test_readers_tables import TABLE, airfoils, table
 
 import bladegen as bg
+from bladegen.airfoils.polars import Polar
 from bladegen.errors import BladegenError, FileError, StudioError
-from bladegen.identity import fingerprint
-from bladegen.polars import Polar
-from bladegen.provenance import content_of
+from bladegen.exports.provenance import content_of
+from bladegen.families.identity import fingerprint
 from bladegen.studio import library as module
 from bladegen.studio.library import Library
 

@@ -15,8 +15,8 @@ import pytest
 from test_readers_tables import TABLE, table
 
 import bladegen as bg
-from bladegen import checks
 from bladegen.errors import StudioError
+from bladegen.measures import checks
 from bladegen.studio import server
 from bladegen.studio.library import Library
 from bladegen.studio.page import Page

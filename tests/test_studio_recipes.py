@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen import checks, cli
+from bladegen.cli import commands
+from bladegen.measures import checks
 from bladegen.studio.library import Entry
 from bladegen.studio.model import Baseline
 from bladegen.studio.recipes import python, shell
@@ -41,7 +42,7 @@ def test_the_command_makes_the_same_blade(baseline, tmp_path):
     words = shlex.split(shell(state, ENTRY, baseline.stem(state)))
     assert words[0] == "bladegen"
     words[words.index("out/")] = str(tmp_path)
-    done = CliRunner().invoke(cli.app, [*words[1:], "--format", "stl", "--stations", "60"])
+    done = CliRunner().invoke(commands.app, [*words[1:], "--format", "stl", "--stations", "60"])
     assert done.exit_code == 0, done.output
     made = checks.check_file(tmp_path / f"{baseline.stem(state)}.stl").figures
     own = bg.export(baseline.variant(state), tmp_path / "own.stl", stations=60)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from bladegen import cli
+from bladegen.cli import commands
 from bladegen.errors import FileError, StudioError
 from bladegen.studio import server
 from bladegen.studio.server import Serving, bound, serve
@@ -39,7 +39,7 @@ def test_addresses_hold_the_token_and_a_name_that_can_be_reached():
 
 def test_without_the_web_framework_one_line_names_the_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "nicegui", None)
-    result = CliRunner().invoke(cli.app, ["studio", "--no-browser"])
+    result = CliRunner().invoke(commands.app, ["studio", "--no-browser"])
     assert isinstance(result.exception, StudioError)
     assert str(result.exception) == ('needs nicegui, which pip install "bladegen[studio]" brings')
 
@@ -58,19 +58,19 @@ def test_the_command_says_where_and_opens_the_browser(monkeypatch):
 
     monkeypatch.setattr(server, "serve", fake)
     monkeypatch.setattr("webbrowser.open", opened.append)
-    result = CliRunner().invoke(cli.app, ["studio", "a.csv", "--airfoils", "b", "--port", "5"])
+    result = CliRunner().invoke(commands.app, ["studio", "a.csv", "--airfoils", "b", "--port", "5"])
     assert result.exit_code == 0
     assert "http://127.0.0.1:1/" in result.output
     assert asked == [("a.csv", "127.0.0.1", 5, Path("b"))]
     assert opened == ["http://127.0.0.1:1/"]
-    CliRunner().invoke(cli.app, ["studio", "--no-browser"])
+    CliRunner().invoke(commands.app, ["studio", "--no-browser"])
     assert len(opened) == 1
 
 
 def test_a_studio_elsewhere_needs_its_token_and_leaves_nothing_behind(tmp_path):
     for name in ("temporary", "here"):
         (tmp_path / name).mkdir()
-    code = "from bladegen.cli import main; main()"
+    code = "from bladegen.cli.commands import main; main()"
     command = [sys.executable, "-c", code, "studio", "nrel5mw", "--no-browser"]
     process = subprocess.Popen(
         [*command, "--port", "0", "--host", "0.0.0.0"],

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bladegen.errors import StudioError
-from bladegen.pga import ShapeSpace
+from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.state import AFFINE, AT, History, State, controls, from_query, to_query
 from strategies import few
 

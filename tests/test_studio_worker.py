@@ -10,9 +10,9 @@ import pytest
 from processes import gone_within, running
 from test_readers_tables import TABLE, airfoils
 
-from bladegen import checks
 from bladegen.errors import StudioError
-from bladegen.exporters import FORMATS, Format, Kind
+from bladegen.exports.exporters import FORMATS, Format, Kind
+from bladegen.measures import checks
 from bladegen.studio.state import State
 from bladegen.studio.worker import Job, Worker, formats, make
 
@@ -59,8 +59,8 @@ def test_a_format_of_several_files_comes_as_one_archive(tmp_path, monkeypatch):
 
 
 def test_a_missed_tolerance_is_a_remark(tmp_path, monkeypatch):
-    monkeypatch.setattr("bladegen.net.MAX_SECTIONS", 20)
-    monkeypatch.setattr("bladegen.net.FIRST_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.net.MAX_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.net.FIRST_SECTIONS", 20)
     made = make(Job("nrel5mw", MOVED, ".step", str(tmp_path)))
     assert made.path.endswith("nrel5mw-variant.out-of-tolerance.step")
     assert "off the blade" in made.remark

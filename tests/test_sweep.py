@@ -7,7 +7,7 @@ from PIL import Image
 
 import bladegen as bg
 from bladegen.errors import BladegenError, DesignError, ExportError, RenderError
-from bladegen.preview import sweep
+from bladegen.views import sweep
 
 SIZE = (640, 360)
 

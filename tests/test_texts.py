@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pyarrow import csv, parquet
 
-from bladegen import texts
+from bladegen.cli import texts
+from bladegen.cli.texts import coordinates, metres, radians, span_window
 from bladegen.errors import BladegenError, FileError
-from bladegen.pga import ShapeSpace
-from bladegen.texts import coordinates, metres, radians, span_window
+from bladegen.shapes.shape_space import ShapeSpace
 
 
 @given(st.floats(1e-6, 1e3), st.sampled_from([("um", 1e-6), ("mm", 1e-3), ("cm", 1e-2), ("m", 1)]))

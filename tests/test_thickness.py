@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import PchipInterpolator
 
 import bladegen as bg
-from bladegen.definition import Airfoil, BladeDefinition, Distribution, Station
-from bladegen.thickness import ruled
+from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distribution, Station
+from bladegen.definition.thickness import ruled
 from strategies import naca
 
 ETA = np.unique(np.concatenate([np.linspace(0.0, 1.0, 13), np.array([0.0875, 0.213, 0.61])]))

@@ -4,10 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen import cad
-from bladegen.blade import Blade
-from bladegen.readers import bundled, read
-from bladegen.tips import arcs, flat_tip, on_arcs, round_tip
+from bladegen.blade.blade import Blade
+from bladegen.cad import solids
+from bladegen.formats.reading import bundled, read
+from bladegen.surface.tips import arcs, flat_tip, on_arcs, round_tip
 from strategies import SEEDS, definitions
 
 W = np.linspace(0.0, 1.0, 9)
@@ -65,7 +65,7 @@ def test_arcs_lie_on_the_solid_s_tip(name):
     from OCP.gp import gp_Pnt
 
     blade = Blade.from_definition(read(name))
-    tip = dict(cad.solid(blade, tolerance=1e-3, tip=round_tip).faces)["tip"]
+    tip = dict(solids.solid(blade, tolerance=1e-3, tip=round_tip).faces)["tip"]
     points = 1e3 * on_arcs(arcs(blade, round_tip)[5::60, None], W[None, 2:-1:3])
     for point in points.reshape(-1, 3).tolist():
         vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*point)).Vertex()

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen import grassmann
-from bladegen.landmarks import landmark_parameters, landmarks
-from bladegen.sections import SectionSplines
-from bladegen.smoothness import edge_bulges, edge_widths
-from bladegen.widths import Wedges
+from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.blade.edge_widths import Wedges
+from bladegen.measures.smoothness import edge_bulges, edge_widths
+from bladegen.shapes import grassmann
 from strategies import airfoils, definitions, few
 
 U = landmark_parameters(401)

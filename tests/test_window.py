@@ -2,12 +2,11 @@ import numpy as np
 import pytest
 
 import bladegen as bg
-from bladegen import keys, preview
 from bladegen.errors import RenderError
-from bladegen.preview import renderer
-from bladegen.preview.cameras import VIEWS
-from bladegen.preview.scene import scene_of
-from bladegen.preview.window import Window
+from bladegen.views import keys, preview, renderer
+from bladegen.views.blade_scene import scene_of
+from bladegen.views.cameras import VIEWS
+from bladegen.views.window import Window
 
 SIZE = (640, 360)
 

@@ -9,16 +9,16 @@ from hypothesis import given, settings
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen import writers
-from bladegen.definition import Airfoil, BladeDefinition, Distribution, Station
+from bladegen.airfoils.landmarks import oriented
+from bladegen.airfoils.polars import Polar
+from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distribution, Station
 from bladegen.errors import ExportError, FileError
-from bladegen.landmarks import oriented
-from bladegen.polars import Polar
-from bladegen.readers import turbine_file
-from bladegen.readers.airfoil_files import read_airfoil, read_folder
-from bladegen.readers.yaml_file import load_yaml
-from bladegen.redefinition import redefined
-from bladegen.writers.into import write_into
+from bladegen.formats import writing
+from bladegen.formats.airfoils.reading import read_airfoil, read_folder
+from bladegen.formats.common.redefinition import redefined
+from bladegen.formats.into import write_into
+from bladegen.formats.windio import turbine_file
+from bladegen.formats.windio.yaml_file import load_yaml
 from strategies import airfoils, definitions, few, naca
 
 ETA = np.linspace(0.0, 1.0, 401)
@@ -125,8 +125,8 @@ def test_airfoils_of_one_name_and_two_shapes_are_kept_apart(tmp_path):
 
 
 def test_formats_are_found_by_name_and_suffix(tmp_path):
-    assert writers.format_of(tmp_path / "a.YML").name == "windio2"
-    assert writers.format_of(tmp_path / "a.yaml", "windio1").title == "windIO 1"
+    assert writing.format_of(tmp_path / "a.YML").name == "windio2"
+    assert writing.format_of(tmp_path / "a.yaml", "windio1").title == "windIO 1"
     with pytest.raises(ExportError, match="format: got 'plot3d', allowed are windio2, windio1"):
         bg.write(bg.read("nrel5mw"), tmp_path / "a.yaml", format="plot3d")
     with pytest.raises(ExportError, match=r"suffix '\.step', allowed are \.yaml, \.yml"):
@@ -136,9 +136,9 @@ def test_formats_are_found_by_name_and_suffix(tmp_path):
 
 
 def test_every_version_that_is_read_is_written():
-    titles = {row.title for row in writers.FORMATS}
+    titles = {row.title for row in writing.FORMATS}
     assert {version.name for version in turbine_file.VERSIONS} <= titles
-    assert {row.name for row in writers.FORMATS} >= set(WINDIO)
+    assert {row.name for row in writing.FORMATS} >= set(WINDIO)
 
 
 # ---- back into a full turbine file ------------------------------------------------------------

@@ -76,7 +76,7 @@ def run(job: dict[str, Any], out: int, error: int) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (job["limit"], job["limit"]))
     if job.get("plain"):
         without_overrides()
-    from bladegen.cli import main
+    from bladegen.cli.commands import main
 
     status = 70
     try:
@@ -174,7 +174,7 @@ def serve() -> None:
     os.dup2(2, 1)
     for name in SLOW:
         importlib.import_module(name)
-    importlib.import_module("bladegen.cli")
+    importlib.import_module("bladegen.cli.commands")
     answers.write("ready\n")
     answers.flush()
     for line in sys.stdin:

@@ -10,8 +10,8 @@ from math import floor, log10
 
 import numpy as np
 
-from bladegen.arrays import Array
 from bladegen.studio.model import Scene
+from bladegen.support.arrays import Array
 
 __all__ = ["planform", "section", "ticks"]
 

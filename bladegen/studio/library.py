@@ -14,25 +14,20 @@ from shutil import rmtree
 from tempfile import TemporaryDirectory
 from threading import Lock
 
-from bladegen.blade import Blade
-from bladegen.definition import BladeDefinition
+from bladegen.blade.blade import Blade
+from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import FileError, StudioError, visible
-from bladegen.files import safe_stem
-from bladegen.identity import fingerprint
-from bladegen.pga import ShapeSpace
-from bladegen.readers import (
-    SUFFIXES,
-    airfoil_files,
-    bundled,
-    hawc2,
-    holds_blade,
-    openfast,
-    qblade,
-    read,
-    turbine_file,
-)
-from bladegen.readers.openfast_model import PART_SUFFIX
+from bladegen.families.identity import fingerprint
+from bladegen.formats.airfoils import reading as airfoil_files
+from bladegen.formats.hawc2 import reading as hawc2
+from bladegen.formats.openfast import reading as openfast
+from bladegen.formats.openfast.model import PART_SUFFIX
+from bladegen.formats.qblade import reading as qblade
+from bladegen.formats.reading import SUFFIXES, bundled, holds_blade, read
+from bladegen.formats.windio import turbine_file
+from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.model import Baseline
+from bladegen.support.files import safe_stem
 
 __all__ = ["UPLOADS", "UPLOAD_BYTES", "UPLOAD_FILES", "Entry", "Library"]
 

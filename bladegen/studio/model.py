@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.arrays import Array, Mask
-from bladegen.batch import FAULTS, Batch, SectionBatch
-from bladegen.blade import Blade
-from bladegen.deformation import AffineChange, Window
-from bladegen.families import THINNEST
-from bladegen.files import safe_stem
-from bladegen.pga import ShapeSpace
-from bladegen.sanity import KINDS
+from bladegen.blade.blade import Blade
+from bladegen.blade.deformation import AffineChange, Window
+from bladegen.blade.sanity import KINDS
+from bladegen.families.family import THINNEST
+from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.state import State
+from bladegen.support.arrays import Array, Mask
+from bladegen.support.files import safe_stem
+from bladegen.variants.batch import FAULTS, Batch, SectionBatch
 
 __all__ = ["Baseline", "Check", "Curves", "Scene", "changes"]
 

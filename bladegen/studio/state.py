@@ -15,7 +15,7 @@ from urllib.parse import parse_qs, urlencode
 import numpy as np
 
 from bladegen.errors import StudioError
-from bladegen.pga import ShapeSpace
+from bladegen.shapes.shape_space import ShapeSpace
 
 __all__ = ["CONTROLS", "Control", "History", "State", "controls", "from_query", "to_query"]
 

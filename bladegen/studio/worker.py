@@ -14,11 +14,11 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile
 
-from bladegen.blade import Blade
+from bladegen.blade.blade import Blade
 from bladegen.errors import BladegenError, StudioError, ToleranceError
-from bladegen.exporters import FORMATS, Options, Products, aside, write
-from bladegen.pga import ShapeSpace
-from bladegen.readers import read
+from bladegen.exports.exporters import FORMATS, Options, Products, aside, write
+from bladegen.formats.reading import read
+from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.model import Baseline
 from bladegen.studio.state import State
 
@@ -158,7 +158,7 @@ class Worker:
 
 def _load(parent: int) -> None:
     """Import what is slow to import; leave the other processors to the page."""
-    from bladegen.orphans import end_with
+    from bladegen.support.workers import end_with
 
     end_with(parent)
     import cadquery  # noqa: F401

@@ -1,0 +1,139 @@
+"""Airfoil points to fair ones: noise of their digits taken out, each point held to a tolerance.
+
+Coordinates of five digits scatter by some 3e-6 chord about the airfoil that they mean; it does not
+show in the contour, but in its curvature.  Points (m, 2) in chords are moved to
+
+    minimise  sum_j (t_j+3 - t_j) / 3 |D3_j|^2     with |moved_i| <= bound_i,
+
+where D3 are third divided differences in chord length t, so that curvature varies as little as it
+can.  A point's bound is a few times the scatter of the points around it, the tolerance at most:
+points that lie on a smooth curve already, to their last digit, stay.
+"""
+
+import numpy as np
+
+from bladegen.errors import GeometryError
+from bladegen.support.arrays import Array
+
+__all__ = ["TOLERANCE", "fair"]
+
+TOLERANCE = 1e-5  # of chord: one unit of the fifth digit, the usual last one
+COARSEST = 1e-2  # of chord; a tolerance above that would be a change of design
+NEIGHBOURS = 3  # on either side, through which a point's scatter is measured
+AROUND = 9  # points whose median scatter bounds the middle one's move
+FACTOR = 3.0  # of the scatter's median: a rounding error is at most 2.4 times its median
+HELD = 1e-14  # chord; the bound of points that do not scatter, and of the ends
+ITERATIONS = 40  # of the weights; bounds are met to a few per cent after 20
+WITHIN = 1.0 - 1e-9  # of the tolerance, so that rounding does not pass it
+SOFTEST = 1e-13  # of the stiffness; lesser weights leave the equations singular
+
+
+def fair(points: Array, tolerance: float = TOLERANCE) -> Array:
+    """Return airfoil points without their noise.
+
+    Parameters
+    ----------
+    points : (m, 2) array
+        Distinct neighbours, in chords; the first and the last stay.
+    tolerance : float
+        Largest distance that a point moves, in chords.
+
+    Returns
+    -------
+    (m, 2) array
+        The points moved, none by more than `tolerance`; the same where there are too few to
+        tell noise.
+
+    Raises
+    ------
+    GeometryError
+        If the tolerance is not positive or more than a hundredth of the chord.
+
+    Notes
+    -----
+    The bounds' multipliers are found by multiplicative updates of the weights of a Whittaker
+    smoother, each a banded system; what they still miss is taken off at last.
+    """
+    if not 0.0 < tolerance <= COARSEST:
+        raise GeometryError(
+            f"fairing: got {tolerance:g} chord, allowed is more than 0 and at most {COARSEST:g}"
+        )
+    if len(points) < 2 * NEIGHBOURS + 3:
+        return points
+    t = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    bound = np.minimum(WITHIN * tolerance, FACTOR * _scatter(t, points))
+    bound = np.maximum(bound, HELD)
+    bound[[0, -1]] = HELD
+    rows = _third_differences(t)
+    stiffness = _banded(rows)
+    roughness = np.sum(_applied(rows, points) ** 2) / len(points)
+    weight = np.maximum(0.01 * roughness / bound**2, SOFTEST * stiffness[-1])
+    for _ in range(ITERATIONS):
+        moved = _smoothed(stiffness, weight, points) - points
+        share = np.hypot(*moved.T) / bound
+        weight = np.maximum(weight * np.clip(share, 0.1, 10.0), SOFTEST * stiffness[-1])
+        weight[[0, -1]] = 1e6 * weight.max()
+    moved[[0, -1]] = 0.0
+    share = np.hypot(*moved.T) / bound
+    return np.asarray(points + moved / max(1.0, float(share.max())))
+
+
+def _scatter(t: Array, points: Array) -> Array:
+    """Return how far points lie from the polynomial through their neighbours, smoothed, (m,).
+
+    Over the share of it that independent errors of one point and its neighbours would have.
+    """
+    m = len(points) - 2 * NEIGHBOURS
+    middle = np.arange(m) + NEIGHBOURS
+    others = [k for k in range(-NEIGHBOURS, NEIGHBOURS + 1) if k]
+    missed, gain = points[middle].copy(), np.ones(m)
+    for a in others:
+        share = np.ones(m)
+        for b in others:
+            if b != a:
+                share *= (t[middle] - t[middle + b]) / (t[middle + a] - t[middle + b])
+        missed -= share[:, None] * points[middle + a]
+        gain += share**2
+    scatter = np.hypot(*missed.T) / np.sqrt(gain)
+    padded = np.pad(scatter, NEIGHBOURS + AROUND // 2, mode="edge")
+    smooth: Array = np.median(np.lib.stride_tricks.sliding_window_view(padded, AROUND), axis=-1)
+    return smooth
+
+
+def _third_differences(t: Array) -> Array:
+    """Return the factors (4, m - 3) of four neighbours in third derivatives, by their length."""
+    j = np.arange(len(t) - 3)
+    rows = np.empty((4, len(j)))
+    for a in range(4):
+        others = [t[j + a] - t[j + b] for b in range(4) if b != a]
+        rows[a] = 6.0 / (others[0] * others[1] * others[2])
+    return rows * np.sqrt((t[3:] - t[:-3]) / 3.0)
+
+
+def _applied(rows: Array, points: Array) -> Array:
+    """Return the third differences of points, (m - 3, 2)."""
+    count = rows.shape[1]
+    total: Array = sum(
+        (rows[a][:, None] * points[a : a + count] for a in range(4)), np.zeros((count, 2))
+    )
+    return total
+
+
+def _banded(rows: Array) -> Array:
+    """Return the matrix of the squared differences in upper banded form, (4, m)."""
+    count = rows.shape[1]
+    bands = np.zeros((4, count + 3))
+    for a in range(4):
+        for b in range(a, 4):
+            bands[3 + a - b, b : b + count] += rows[a] * rows[b]
+    return bands
+
+
+def _smoothed(stiffness: Array, weight: Array, points: Array) -> Array:
+    """Return the points of least roughness plus weighted squared moves."""
+    from scipy.linalg import solveh_banded
+
+    bands = stiffness.copy()
+    bands[-1] += weight
+    solved: Array = solveh_banded(bands, weight[:, None] * points)
+    return solved

@@ -1,0 +1,167 @@
+"""From unit-chord sections to sections in space: chord, twist, offsets and section planes.
+
+Blade frame: origin at the root on the pitch axis, x to the suction side, y to the trailing
+edge, z to the tip.  Positive twist moves the leading edge upwind (to -x).  Before a section
+is tilted to its plane, an airfoil point (x, y) with chord c, twist t and axis (Xa, Ya, Za)
+lies at
+
+    X = Xa + h cos t + a sin t        a = c x - section_offset_y   (along the chord)
+    Y = Ya + a cos t - h sin t        h = c y + section_offset_x   (normal to the chord)
+
+This is the one place where these signs stand.  Frames are rotation-minimising along the
+reference axis: no roll is added (Wang, Juttler, Zheng & Liu, ACM TOG 27 (2008)).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladegen.definition.blade_definition import BladeDefinition, ReferenceAxis
+from bladegen.support.arrays import Array
+
+__all__ = ["Frames", "Planform", "SectionPlanes", "normal_to_axis", "normal_to_z", "placement"]
+
+AT_REST = 1e-6  # of the span, from an end at which the axis has no velocity
+FRAME_STEPS = 2000  # spans at which frames are carried; a sweep of 10 % turns by 1e-4 rad a step
+
+Frames = Callable[[Array], Array]
+SectionPlanes = Callable[[ReferenceAxis], Frames]
+
+
+def normal_to_z(axis: ReferenceAxis) -> Frames:  # noqa: ARG001
+    """Keep all section planes normal to the pitch axis z."""
+    return lambda eta: np.broadcast_to(np.eye(3), (*eta.shape, 3, 3))
+
+
+def normal_to_axis(axis: ReferenceAxis) -> Frames:
+    """Turn section planes normal to the reference axis, without adding roll.
+
+    Returns
+    -------
+    callable
+        From span fractions (k,) to frames (k, 3, 3), whose rows are the unit vectors of the
+        section's x, its y and the axis' tangent.
+    """
+    grid = np.union1d(np.linspace(0.0, 1.0, FRAME_STEPS + 1), axis.z.grid)
+    tangents = _tangents(axis, grid)
+    steps = _turn(np.concatenate([[[0.0, 0.0, 1.0]], tangents[:-1]]), tangents)
+    carried = _running_product(steps)
+
+    def frames(eta: Array) -> Array:
+        i = np.clip(np.searchsorted(grid, eta, side="right") - 1, 0, len(grid) - 1)
+        return carried[i] @ _turn(carried[i, 2], _tangents(axis, eta))
+
+    return frames
+
+
+def _running_product(matrices: Array) -> Array:
+    """Return the products of the first 1, 2, 3, ... matrices, in log2(k) batched steps."""
+    product, reach = matrices.copy(), 1
+    while reach < len(product):
+        product[reach:] = product[:-reach] @ product[reach:]
+        reach *= 2
+    return product
+
+
+def _tangents(axis: ReferenceAxis, eta: Array) -> Array:
+    start, end = axis.z.grid[0], axis.z.grid[-1]
+    along = axis(np.clip(eta, start, end), 1)
+    still = ~np.any(along, axis=-1, keepdims=True)
+    if still.any():  # monotone splines may start from rest: the direction just inside holds
+        inside = np.clip(eta, start + AT_REST * (end - start), end - AT_REST * (end - start))
+        along = np.where(still, axis(inside, 1), along)
+    unit: Array = along / np.linalg.norm(along, axis=-1, keepdims=True)
+    return unit
+
+
+def _turn(start: Array, end: Array) -> Array:
+    """Return the smallest rotation that takes unit vectors `start` to `end`, acting on rows."""
+    v = np.cross(start, end)
+    c = np.sum(start * end, axis=-1)[..., None, None]
+    zero = np.zeros(v.shape[:-1])
+    cross = np.stack(
+        [
+            np.stack([zero, v[..., 2], -v[..., 1]], axis=-1),
+            np.stack([-v[..., 2], zero, v[..., 0]], axis=-1),
+            np.stack([v[..., 1], -v[..., 0], zero], axis=-1),
+        ],
+        axis=-2,
+    )
+    rotation: Array = np.eye(3) + cross + cross @ cross / (1.0 + c)
+    return rotation
+
+
+@dataclass(frozen=True)
+class Planform:
+    """Chord, twist, offsets and axis of a blade, and where they put its sections.
+
+    Parameters
+    ----------
+    definition : BladeDefinition
+        The distributions.
+    planes : callable
+        Section planes: `normal_to_axis` or `normal_to_z`.
+    """
+
+    definition: BladeDefinition
+    planes: SectionPlanes = normal_to_axis
+
+    @cached_property
+    def frames(self) -> Frames:
+        """Section frames (k, 3, 3) as a function of span."""
+        return self.planes(self.definition.axis)
+
+    def place(self, profiles: Array, eta: Array) -> Array:
+        """Put unit-chord sections in space.
+
+        Parameters
+        ----------
+        profiles : (k, n, 2) array
+            Sections in chords, airfoil axes.
+        eta : (k,) array
+            Their span fractions.
+
+        Returns
+        -------
+        (k, n, 3) array
+            Points [m], blade frame.
+        """
+        blade = self.definition
+        axes, start = placement(
+            blade.chord(eta),
+            blade.twist(eta),
+            np.stack([-blade.offset_y(eta), blade.offset_x(eta)], axis=-1),
+            blade.axis(eta),
+            self.frames(eta),
+        )
+        return profiles @ axes + start[..., None, :]
+
+
+def placement(
+    chord: Array, twist: Array, offset: Array, axis: Array, frames: Array
+) -> tuple[Array, Array]:
+    """Return the maps from sections in chords to space.
+
+    Parameters
+    ----------
+    chord, twist : (...) arrays
+        [m] and [rad].
+    offset : (..., 2) array
+        The leading edge from the axis, along the chord and normal to it [m].
+    axis : (..., 3) array
+        The reference axis [m].
+    frames : (..., 3, 3) array
+        Rows: the section's x and y, and the plane's normal.
+
+    Returns
+    -------
+    axes, start : (..., 2, 3), (..., 3) arrays
+        A section's points are ``profile @ axes + start``.
+    """
+    c, s = np.cos(twist), np.sin(twist)
+    turn = np.stack([np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1)], axis=-2)
+    axes = turn @ frames[..., :2, :]  # rows: along the chord, normal to it
+    start = axis + (offset[..., None, :] @ axes)[..., 0, :]
+    return chord[..., None, None] * axes, start

@@ -1,0 +1,183 @@
+"""A rotor: a blade's copies around the hub with precone, and a plain spinner.
+
+Rotor frame: x along the rotor axis, downwind; z up.  The first blade points up.  A blade's frame
+is its own with the root at the hub radius; its suction side faces downwind and its leading edge
+goes first, so that the rotor turns clockwise as seen from upwind.  Precone leans tips upwind (to
+-x), away from the tower, as windIO's positive cone angle does.  The mirror image turns the other
+way.  Metres and radians; the STEP assembly is in millimetres.  cadquery comes late.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.blade.blade import Blade
+from bladegen.cad.exchange import triangulated
+from bladegen.cad.solids import MILLIMETRES, Solid
+from bladegen.errors import CadError
+from bladegen.support.arrays import Array
+from bladegen.support.files import require_end
+from bladegen.surface.mesh import TriangleMesh, assembled
+
+__all__ = ["Rotor", "rotor_of", "write_glb", "write_step"]
+
+NOSE, BACK = 1.3, 0.9  # lengths of the spinner ahead of and behind the blades, in its radii
+COVER = 1.02  # the spinner's radius over what hides the root sections
+MOST_BLADES = 8
+LARGEST_HUB = 1.0  # radius over the blade's length
+LARGEST_CONE = np.radians(45.0)
+DEFLECTION = 0.005  # m, of the spinner's triangles
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """Where the blades of a rotor stand.
+
+    Parameters
+    ----------
+    blades : int
+        How many, evenly around the axis.
+    hub_radius : float
+        From the axis to the blades' roots [m].
+    cone : float
+        Precone, positive upwind [rad].
+    spinner_radius : float
+        Of the plain spinner [m].
+    mirrored : bool
+        Turn anticlockwise as seen from upwind.
+    """
+
+    blades: int
+    hub_radius: float
+    cone: float
+    spinner_radius: float
+    mirrored: bool = False
+
+    def placements(self) -> tuple[Array, Array]:
+        """Return rotations (n, 3, 3) and shifts (n, 3) [m]: points are ``p @ R.T + shift``.
+
+        A mirrored blade is to be mirrored in its own y first.
+        """
+        c, s = np.cos(self.cone), np.sin(self.cone)
+        lean = np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])  # z goes to (-s, 0, c)
+        azimuth = 2.0 * np.pi * np.arange(self.blades) / self.blades
+        ca, sa = np.cos(azimuth), np.sin(azimuth)
+        zero, one = np.zeros_like(ca), np.ones_like(ca)
+        turn = np.stack(
+            [
+                np.stack([one, zero, zero], axis=-1),
+                np.stack([zero, ca, -sa], axis=-1),
+                np.stack([zero, sa, ca], axis=-1),
+            ],
+            axis=-2,
+        )
+        rotations = turn @ lean
+        return rotations, self.hub_radius * rotations[..., 2]
+
+
+def rotor_of(
+    blade: Blade,
+    *,
+    mirrored: bool = False,
+    hub_radius: float | None = None,
+    cone: float | None = None,
+) -> Rotor:
+    """Return the rotor that a blade's definition describes.
+
+    Parameters
+    ----------
+    blade : Blade
+        The blade.
+    mirrored : bool
+        Turn anticlockwise as seen from upwind.
+    hub_radius : float, optional
+        Instead of the definition's [m].
+    cone : float, optional
+        Precone instead of the definition's, positive upwind [rad].
+
+    Raises
+    ------
+    CadError
+        If there is no hub radius, or no usable number of blades or cone.
+    """
+    facts = blade.definition.rotor
+    if hub_radius is not None or cone is not None:
+        facts = replace(
+            facts,
+            hub_radius=facts.hub_radius if hub_radius is None else hub_radius,
+            cone=facts.cone if cone is None else cone,
+        )
+    if facts.hub_radius is None or not facts.hub_radius > 0:
+        raise CadError(
+            f"{blade.name}: the definition names no hub radius, which a rotor needs; give one "
+            "(--hub-radius LENGTH, such as 2m)"
+        )
+    if not facts.hub_radius <= LARGEST_HUB * blade.length:
+        raise CadError(
+            f"{blade.name}: hub radius {facts.hub_radius:g} m, allowed is up to the blade's length "
+            f"of {blade.length:g} m"
+        )
+    if not abs(facts.cone or 0.0) <= LARGEST_CONE:
+        raise CadError(
+            f"{blade.name}: precone {np.degrees(facts.cone or 0.0):g} deg, allowed is "
+            f"{-np.degrees(LARGEST_CONE):g} to {np.degrees(LARGEST_CONE):g} deg"
+        )
+    if not 1 <= facts.blades <= MOST_BLADES:
+        raise CadError(f"{blade.name}: {facts.blades} blades, allowed are 1 to {MOST_BLADES}")
+    root = blade.sections(np.zeros(1))[0]
+    reach = float(np.max(np.linalg.norm(root[:, :2], axis=-1)))
+    radius = COVER * float(np.hypot(facts.hub_radius, reach))
+    return Rotor(facts.blades, facts.hub_radius, facts.cone or 0.0, radius, mirrored)
+
+
+def write_step(rotor: Rotor, solid: Solid, path: Path) -> None:
+    """Write a rotor as one STEP assembly with named parts: blade 1, blade 2, ..., spinner.
+
+    Raises
+    ------
+    CadError
+        If OCCT cannot write the file.
+    """
+    import cadquery as cq
+
+    part = cq.Solid(solid.shape)
+    if rotor.mirrored:
+        part = part.mirror("XZ")
+    assembly = cq.Assembly(name=f"{solid.name} rotor")
+    rotations, shifts = rotor.placements()
+    for number, (rotation, shift) in enumerate(zip(rotations, shifts, strict=True), start=1):
+        plane = cq.Plane(
+            origin=tuple((shift * MILLIMETRES).tolist()),
+            xDir=tuple(rotation[:, 0].tolist()),
+            normal=tuple(rotation[:, 2].tolist()),
+        )
+        assembly.add(part, name=f"blade {number}", loc=cq.Location(plane))
+    assembly.add(_spinner(rotor.spinner_radius), name="spinner")
+    if not assembly.export(str(path), exportType="STEP"):
+        raise CadError(f"{path}: OCCT could not write the assembly")
+    require_end(path, b"END-ISO-10303-21;")
+
+
+def write_glb(rotor: Rotor, mesh: TriangleMesh, path: Path) -> None:
+    """Write a rotor as GLB: the same parts under the same names, metres."""
+    blade = mesh
+    if rotor.mirrored:
+        blade = TriangleMesh(mesh.vertices * np.array([1.0, -1.0, 1.0]), mesh.faces[:, ::-1])
+    parts = []
+    for number, (rotation, shift) in enumerate(zip(*rotor.placements(), strict=True), start=1):
+        parts.append((f"blade {number}", blade, rotation, shift))
+    spinner = triangulated(_spinner(rotor.spinner_radius).wrapped, DEFLECTION)
+    parts.append(("spinner", spinner, np.eye(3), np.zeros(3)))
+    path.write_bytes(assembled(parts))
+
+
+def _spinner(radius: float) -> Any:
+    """Return a cadquery solid [mm]: an ellipsoidal nose ahead of a cylinder, along x."""
+    import cadquery as cq
+
+    r = radius * MILLIMETRES
+    nose = cq.Workplane("XY").moveTo(0, r).ellipseArc(NOSE * r, r, 90, 180)
+    outline = nose.lineTo(BACK * r, 0).lineTo(BACK * r, r).close()
+    return outline.revolve(360, (0, 0, 0), (1, 0, 0)).val()

@@ -1,0 +1,119 @@
+"""The command `bladegen check`: measure one thing, or the distance between two."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen.cli.options import MAKING, Airfoils, Json, ending_in
+from bladegen.cli.terminal import print_figures, print_findings, print_table, progress_bar
+from bladegen.errors import BladegenError
+
+__all__ = ["blade_of", "check"]
+
+
+def check(
+    file: Annotated[
+        str, typer.Argument(metavar="FILE", help="A CAD or mesh file, or a blade definition.")
+    ],
+    other: Annotated[
+        str | None,
+        typer.Argument(metavar="[OTHER]", help="Another one: the distance between the two."),
+    ] = None,
+    screenshot: Annotated[
+        Path | None,
+        typer.Option(
+            help="With OTHER: a PNG of FILE coloured by distance.", callback=ending_in(".png")
+        ),
+    ] = None,
+    airfoils: Airfoils = None,
+    as_json: Json = False,
+) -> None:
+    """Measure a solid, a mesh or a blade definition, or the distance between two of them.
+
+    Exit with 1 if a single one is not sound.
+    """
+    if other is not None:
+        _compare(file, other, screenshot, airfoils, as_json)
+        return
+    if screenshot is not None:
+        raise BladegenError("screenshot: a picture is made of two files; name another one")
+    from bladegen.exports.inventory import made_by
+    from bladegen.measures import checks
+
+    blade = blade_of(file, airfoils)
+    result = checks.check_file(Path(file)) if blade is None else checks.check_blade(blade)
+    made = None if blade is not None else made_by(Path(file))
+    if as_json:
+        typer.echo(
+            json.dumps(
+                {
+                    "source": result.source,
+                    "kind": result.kind,
+                    **result.figures,
+                    "problems": list(result.problems),
+                    "made_from": None if made is None else made.text,
+                },
+                indent=2,
+            )
+        )
+    else:
+        figures = {k: v for k, v in result.figures.items() if k != "findings"}
+        print_figures(f"{result.source} ({result.kind})", figures)
+        print_findings(result.figures.get("findings", []))
+        if made is not None:
+            typer.echo(f"made from: {made.text}")
+    if result.problems:
+        raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
+
+
+def blade_of(file: str, airfoils: Path | None = None) -> Any:
+    """Return the blade that a name or a definition means, None for other files."""
+    from bladegen.formats.reading import SUFFIXES, bundled
+
+    if file in bundled() or Path(file).suffix.lower() in ("", *SUFFIXES):
+        return replace(MAKING, airfoils=airfoils).blade(file)
+    return None
+
+
+def _compare(
+    file: str, other: str, screenshot: Path | None, airfoils: Path | None, as_json: bool
+) -> None:
+    """Measure two surfaces against each other and print, or draw, what was found."""
+    from bladegen.cli.likeness import alike
+    from bladegen.support.files import replacing
+    from bladegen.views.comparison import compared, draw, surface_of
+
+    with progress_bar() as progress:
+        progress("reading")
+        things = [blade_of(name, airfoils) or Path(name) for name in (file, other)]
+        things, tips, differing = alike(things)
+        one, two = (surface_of(*pair) for pair in zip(things, tips, strict=True))
+        progress("measuring distances")
+        found = compared(one, two)
+        if screenshot is not None:
+            progress("rendering")
+            with replacing(screenshot) as temporary:
+                draw(found, f"{file} against {other}", temporary)
+    if as_json:
+        said = {"source": file, "other": other, "note": "; ".join(found.notes), "made": differing}
+        typer.echo(json.dumps({**said, **found.figures, "bands": found.bands()}, indent=2))
+        return
+    for note in (*found.notes, *differing):  # first: all that follows rests on it
+        typer.echo(f"note: {note}")
+    for thing in things:
+        if not isinstance(thing, Path):
+            print_findings([str(finding) for finding in thing.findings])
+    print_figures(f"{file} against {other}", found.figures)
+    rows = [
+        [
+            f"{band['from_z_m']:.2f} to {band['to_z_m']:.2f}",
+            *(f"{band[key]:.3f}" for key in ("maximum_mm", "rms_mm", "mean_mm")),
+        ]
+        for band in found.bands()
+    ]
+    print_table(["z, m", "largest, mm", "RMS, mm", "mean (outside +), mm"], rows)
+    if screenshot is not None:
+        typer.echo(f"wrote {screenshot}")

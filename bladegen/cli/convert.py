@@ -1,0 +1,62 @@
+"""The command `bladegen convert`: a blade from one file format to another."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen.cli.options import Airfoils, BladeName, Polars, Reynolds
+from bladegen.cli.terminal import print_findings, print_table, progress_bar
+
+__all__ = ["convert"]
+
+
+def convert(
+    source: BladeName,
+    target: Annotated[
+        Path,
+        typer.Argument(
+            metavar="DST", help="The file to write; without a suffix, a folder of airfoil files."
+        ),
+    ],
+    to: Annotated[
+        str | None,
+        typer.Option(metavar="FORMAT", help="The format to write; by the suffix if not given."),
+    ] = None,
+    into: Annotated[
+        Path | None,
+        typer.Option(
+            help="A full turbine file of windIO, AeroDyn's main input or an htc file: DST is that "
+            "one with this blade in it."
+        ),
+    ] = None,
+    polars: Polars = None,
+    reynolds: Reynolds = None,
+    airfoils: Airfoils = None,
+) -> None:
+    """Convert a blade between file formats, and say what the new one cannot hold."""
+    from bladegen.errors import ExportError
+    from bladegen.formats.into import write_into
+    from bladegen.formats.reading import read
+    from bladegen.formats.writing import format_of, prepared, write
+
+    if into is not None and to is not None:
+        raise ExportError(
+            "to: the format is that of the turbine file; leave one of --to, --into out"
+        )
+    row = format_of(target, to)
+    with progress_bar() as progress:
+        progress(f"reading {source}")
+        definition = read(source, airfoils=airfoils)
+        ways: dict[str, Any] = {"polars": polars, "reynolds": reynolds, "progress": progress}
+        if into is None:
+            findings, title = write(definition, target, format=row.name, **ways), row.title
+        else:
+            whole, said = prepared(definition, **ways)
+            progress(f"writing {target}")
+            findings, title = said + write_into(whole, into, target), f"into {into}"
+    print_table(
+        ["", "format", "file"],
+        [["read", definition.format, definition.source], ["written", title, str(target)]],
+    )
+    print_findings([str(finding) for finding in (*definition.findings, *findings)])

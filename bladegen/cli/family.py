@@ -1,0 +1,196 @@
+"""The command `bladegen family`: parse, call, print."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen.cli.options import (
+    LANDMARKS,
+    MAKING,
+    PRODUCING,
+    BladeName,
+    Formats,
+    Making,
+    Producing,
+    Target,
+    grouped,
+    suffixes_of,
+)
+from bladegen.cli.perturb import ChordLine
+from bladegen.cli.terminal import print_table, remark, variants_bar
+from bladegen.errors import FamilyError
+from bladegen.support.stopping import Stopped
+
+__all__ = ["family"]
+
+
+@grouped
+def family(
+    blade: BladeName,
+    output: Target,
+    count: Annotated[int | None, typer.Option(help="How many variants; 100 if not given.")] = None,
+    seed: Annotated[int, typer.Option(help="Of the draws; the same seed, the same family.")] = 0,
+    design: Annotated[
+        str, typer.Option(help="ellipsoid sobol lhs box normal sweep.")
+    ] = "ellipsoid",
+    table: Annotated[
+        Path | None,
+        typer.Option(help="CSV or Parquet: a row a variant, columns t1.., thickness, twist_deg.."),
+    ] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=LOW:HIGH",
+            help="Vary t1.., thickness, camber, chord, twist [deg], chord_scale, twist_scale, "
+            "prebend_scale; may be repeated.",
+        ),
+    ] = None,
+    reach: Annotated[float, typer.Option(help="Share of the space's bounds that is used.")] = 1.0,
+    space: Annotated[
+        str | None, typer.Option(help="A space's file, or 'none'; the bundled one if not given.")
+    ] = None,
+    window: Annotated[
+        str | None,
+        typer.Option(metavar="FROM,TO", help="Where changes fade in; past round roots by default."),
+    ] = None,
+    chord_line: Annotated[
+        ChordLine,
+        typer.Option(help="Keep chord line and nose of the baseline, or leave them to the paper."),
+    ] = ChordLine.kept,
+    spans: Annotated[int, typer.Option(help="Sections a variant.")] = 100,
+    allow_extrapolation: Annotated[
+        bool, typer.Option("--allow-extrapolation", help="Take sections beyond the space's data.")
+    ] = False,
+    allow_odd: Annotated[
+        bool,
+        typer.Option("--allow-odd", help="Take sections with noses, tails or waves of no airfoil."),
+    ] = False,
+    invalid: Annotated[
+        str, typer.Option(help="'redraw' variants that are not sound, or 'keep' and mark them.")
+    ] = "redraw",
+    tries: Annotated[int, typer.Option(help="Draws of one variant at most.")] = 1000,
+    double: Annotated[
+        bool, typer.Option("--double", help="Store sections as float64, not float32.")
+    ] = False,
+    formats: Formats = None,
+    producing: Producing = PRODUCING,
+    making: Making = MAKING,
+    jobs: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
+    dask: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead of --jobs.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with what an earlier run left.")
+    ] = False,
+) -> None:
+    """Make a family of perturbed blades: sections, a manifest, files and a contact sheet."""
+    from bladegen.cli.texts import factor_bounds, factor_table, span_window
+    from bladegen.families.family import family as plan
+    from bladegen.families.run import Order, run
+    from bladegen.shapes.shape_space import ShapeSpace
+
+    suffixes = suffixes_of(formats)
+    known = None
+    if space is None or space.lower() != "none":
+        known = ShapeSpace.bundled() if space is None else ShapeSpace.load(space)
+    if table is not None and (count is not None or vary):
+        raise FamilyError("table: it says what varies and how often; leave --count and --vary out")
+    landmarks = LANDMARKS if known is None else len(known.u)
+    planned = plan(
+        making.blade(blade, landmarks),
+        known,
+        count=100 if count is None else count,
+        seed=seed,
+        design=design if table is None else factor_table(known, table),
+        bounds=factor_bounds(vary or []),
+        reach=reach,
+        window=None if window is None else span_window(window),
+        chord_line=chord_line,
+        allow_extrapolation=allow_extrapolation,
+        allow_odd=allow_odd,
+        spans=spans,
+        invalid=invalid,
+        tries=tries,
+    )
+    order = Order(
+        planned,
+        output,
+        suffixes,
+        "float64" if double else "float32",
+        producing.options(),
+    )
+    try:
+        with _cluster(dask) as client, variants_bar(len(planned)) as progress:
+            made = run(
+                order,
+                jobs=jobs,
+                client=client,
+                resume=resume,
+                progress=progress,
+                foretold=lambda forecast: remark(f"still to be made: {forecast}"),
+            )
+    except Stopped as stop:
+        raise stop.saying(f"{output}: the same command with --resume goes on; ") from None
+    _summary(order, made)
+
+
+@contextmanager
+def _cluster(address: str | None) -> Iterator[Any]:
+    """Connect to a Dask scheduler; None without an address."""
+    if address is None:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError:
+        raise FamilyError(
+            "dask: distributed is not installed; pip install 'bladegen[dask]' adds it"
+        ) from None
+    try:
+        client = Client(address, timeout="10s")
+    except (OSError, ValueError) as error:
+        raise FamilyError(f"dask: {address}: no scheduler answers ({error})") from None
+    with client:
+        yield client
+
+
+def _summary(order: Any, made: int) -> None:
+    """Draw the contact sheet and say what the folder holds."""
+    from bladegen.families.folder import read_manifest
+    from bladegen.views.contact_sheet import contact_sheet
+    from bladegen.views.tables import digits, megabytes
+
+    manifest = read_manifest(order.place, ("name", "valid", "attempts", "volume_m3", "reason"))
+    sheet = order.target / "contact.png"
+    family = order.family
+    remark = contact_sheet(
+        order.place.sections, manifest["name"], manifest["valid"], family.blade, family.eta, sheet
+    )
+    valid = manifest["valid"]
+    volume = manifest["volume_m3"][valid]
+    smallest, largest = (digits(v, 1) for v in (min(volume, default=0), max(volume, default=0)))
+    size = sum(file.stat().st_size for file in order.target.rglob("*") if file.is_file())
+    rows = [
+        ["variants", f"{len(valid)}, {made} of them made now"],
+        ["sound", f"{int(valid.sum())} of {len(valid)}"],
+        ["draws", f"{int(manifest['attempts'].sum())}"],
+        ["volume", f"{smallest} to {largest} m3" if len(volume) else "none"],
+        ["sections", f"{len(family.eta)} of {len(family.blade.u)} landmarks, {order.dtype}"],
+        ["size", megabytes(size)],
+        ["overlay", remark],
+    ]
+    print_table(["figure", "value"], rows, title=f"family of {family.blade.name}")
+    files = [
+        [str(order.place.manifest), "a row a variant: factors, validity, properties over span"],
+        [str(order.place.store), "sections [m]"],
+        [str(sheet), "the family at a glance"],
+    ]
+    if order.suffixes:
+        files.insert(2, [str(order.place.blades), f"files: {' '.join(order.suffixes)}"])
+    print_table(["file", "holds"], files)
+    wrong = [reason for reason in manifest["reason"] if reason]
+    if wrong:
+        typer.echo(f"note: {len(wrong)} variants are not sound, such as: {wrong[0]}")

@@ -1,0 +1,368 @@
+"""What commands have in common: groups of options, and what they make of them.
+
+A group is a frozen dataclass whose fields are options; `grouped` gives a command the options of
+every group among its parameters, so that each option stands in one place.
+"""
+
+import inspect
+import shlex
+from collections.abc import Callable
+from contextvars import ContextVar
+from copy import copy
+from dataclasses import dataclass, fields, is_dataclass
+from enum import StrEnum
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, get_args
+
+import typer
+
+from bladegen.errors import BladegenError
+
+__all__ = [
+    "LANDMARKS",
+    "MAKING",
+    "PRODUCING",
+    "Airfoils",
+    "BladeName",
+    "Formats",
+    "Json",
+    "Landmarks",
+    "Making",
+    "Polars",
+    "Producing",
+    "Reynolds",
+    "Target",
+    "ending_in",
+    "grouped",
+    "suffixes_of",
+]
+
+LANDMARKS = 401
+TOLERANCE = "0.3mm"
+LIGHT, LIGHT_BYTES = "1mm", 2_000_000
+GRIDS = "Structured grids: p3d, fmt, cgns, vtu"
+
+
+class PathKind(StrEnum):
+    """How stations are joined."""
+
+    geodesic = "geodesic"
+    spline = "spline"
+
+
+class TipKind(StrEnum):
+    """How the tip is closed."""
+
+    flat = "flat"
+    round = "round"
+
+
+class Unit(StrEnum):
+    """Units of mesh files."""
+
+    m = "m"
+    mm = "mm"
+
+
+class StepSchema(StrEnum):
+    """Application protocols of STEP files."""
+
+    ap242 = "ap242"
+    ap214 = "ap214"
+
+
+class Planes(StrEnum):
+    """Which way section planes face."""
+
+    axis = "axis"
+    z = "z"
+
+
+BladeName = Annotated[
+    str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a definition's file.")
+]
+Airfoils = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR",
+        help="Folder of airfoil files, for formats that only name their airfoils; one beside the "
+        "file if not given.",
+    ),
+]
+Formats = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--format",
+        help="CAD: step iges brep; triangles: stl glb ply obj 3mf vtp; grids: p3d fmt cgns vtu; "
+        "definitions: yaml (windIO 2) dat (OpenFAST) htc (HAWC2) csv xlsx; sections.csv; png. "
+        "Several with commas, or repeated.",
+    ),
+]
+Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+SideSpacing = Annotated[
+    float,
+    typer.Option(
+        help="Cell at that edge over the side's length, about the chord.", rich_help_panel=GRIDS
+    ),
+]
+SpanSpacing = Annotated[
+    float, typer.Option(help="Cell at that end over the length.", rich_help_panel=GRIDS)
+]
+
+
+Polars = Annotated[
+    str | None,
+    typer.Option(
+        metavar="estimate|estimate-all|keep|none",
+        help="Polars of windIO, OpenFAST and HAWC2 files: by NeuralFoil for shapes without their "
+        "own (default of perturbed blades if the extra aero is installed) or for all, as they "
+        "are, or none.",
+    ),
+]
+Reynolds = Annotated[
+    float | None, typer.Option(help="Of estimated polars; from the file or the chord if not given.")
+]
+
+
+def ending_in(*suffixes: str) -> Callable[[typer.CallbackParam, Path | None], Path | None]:
+    """Return a callback that refuses an output file whose suffix says another kind of file."""
+
+    def checked(param: typer.CallbackParam, value: Path | None) -> Path | None:
+        from bladegen.support.files import require_suffix
+
+        if value is not None:
+            require_suffix(value, suffixes, param.opts[-1])
+        return value
+
+    return checked
+
+
+def _folder(param: typer.CallbackParam, value: Path) -> Path:
+    """Refuse a file's name where a folder is meant."""
+    from bladegen.errors import ExportError
+    from bladegen.exports.exporters import FORMATS
+
+    suffix = next((one for one in FORMATS if value.name.lower().endswith(one)), "")
+    if suffix and not value.is_dir():
+        raise ExportError(
+            f"{param.opts[-1]}: got {value}, must be a folder; such as -o {value.parent} "
+            f"--format {suffix.lstrip('.')}"
+        )
+    return value
+
+
+Target = Annotated[
+    Path, typer.Option("-o", "--output", help="Folder for the files.", callback=_folder)
+]
+
+
+@dataclass(frozen=True)
+class Making:
+    """How a definition becomes a blade."""
+
+    airfoils: Airfoils = None
+    path: Annotated[
+        PathKind,
+        typer.Option(
+            case_sensitive=False, help="Join stations by geodesics or by a smooth spline."
+        ),
+    ] = PathKind.geodesic
+    planes: Annotated[
+        Planes,
+        typer.Option(
+            case_sensitive=False, help="Section planes normal to the reference axis or to z."
+        ),
+    ] = Planes.axis
+    trailing_edge: Annotated[
+        str,
+        typer.Option(
+            metavar="LENGTH[,SHARE%]|given|sharp",
+            help="Least thickness of the trailing edge, such as 5mm; 2mm,1% is at most 1 % of the "
+            "local chord; or as given; or sharp.",
+        ),
+    ] = "2mm,1%"
+    fairing: Annotated[
+        str,
+        typer.Option(
+            metavar="SHARE|off",
+            help="Take noise out of airfoils, at most that share of the chord off any point; "
+            "or off.",
+        ),
+    ] = "1e-5"
+
+    def blade(self, source: str, landmarks: int = LANDMARKS) -> Any:
+        """Read and build a blade."""
+        from bladegen.blade.blade import Blade
+        from bladegen.blade.planform import normal_to_axis, normal_to_z
+        from bladegen.cli.texts import chord_share, finish
+        from bladegen.formats.reading import read
+
+        made = Blade.from_definition(
+            read(source, airfoils=self.airfoils),
+            landmarks=landmarks,
+            path=self.path,
+            planes={"axis": normal_to_axis, "z": normal_to_z}[self.planes],
+            trailing_edge=finish(self.trailing_edge),
+            fairing=chord_share(self.fairing, "fairing"),
+        )
+        made.sections(made.eta)  # refuses a trailing edge that is thicker than its section
+        return made
+
+
+@dataclass(frozen=True)
+class Producing:
+    """How a blade becomes files."""
+
+    tolerance: Annotated[
+        str | None,
+        typer.Option(metavar="LENGTH", help="Largest deviation of the solid; 0.3mm if not given."),
+    ] = None
+    light: Annotated[
+        bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")
+    ] = False
+    stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300
+    tip: Annotated[
+        TipKind,
+        typer.Option(case_sensitive=False, help="A flat or a rounded tip."),
+    ] = TipKind.flat
+    unit: Annotated[
+        Unit,
+        typer.Option(
+            case_sensitive=False, help="Unit of STL, PLY, OBJ, VTP, PLOT3D and VTU files."
+        ),
+    ] = Unit.m
+    step: Annotated[
+        StepSchema,
+        typer.Option(case_sensitive=False, help="Schema of STEP files."),
+    ] = StepSchema.ap242
+    grid_around: Annotated[
+        int, typer.Option(help="Points around a section, odd.", rich_help_panel=GRIDS)
+    ] = 257
+    grid_along: Annotated[
+        int, typer.Option(help="Points from root to tip.", rich_help_panel=GRIDS)
+    ] = 129
+    grid_edge: Annotated[
+        int, typer.Option(help="Cells across the trailing edge, even.", rich_help_panel=GRIDS)
+    ] = 8
+    le_spacing: SideSpacing = 1e-3
+    te_spacing: SideSpacing = 1e-3
+    tip_spacing: SpanSpacing = 2e-4
+    root_spacing: SpanSpacing = 0.01
+    polars: Polars = None
+    reynolds: Reynolds = None
+
+    def options(self) -> Any:
+        """Return how products are made."""
+        from bladegen.cli.texts import metres
+        from bladegen.exports.exporters import Options
+        from bladegen.surface.grid import Spacing
+        from bladegen.surface.tips import TIPS
+
+        if self.light and self.tolerance is not None:
+            raise BladegenError(
+                f"--tolerance: got {self.tolerance}, but --light takes {LIGHT}; leave one out"
+            )
+        tolerance = LIGHT if self.light else self.tolerance or TOLERANCE
+        return Options(
+            tolerance=metres(tolerance, "tolerance"),
+            largest=LIGHT_BYTES if self.light else None,
+            command=_COMMAND.get(),
+            step_schema=self.step,
+            stations=self.stations,
+            tip=TIPS[self.tip],
+            unit=self.unit,
+            polars=self.polars,
+            reynolds=self.reynolds,
+            spacing=Spacing(
+                around=self.grid_around,
+                along=self.grid_along,
+                edge=self.grid_edge,
+                leading_edge=self.le_spacing,
+                trailing_edge=self.te_spacing,
+                tip=self.tip_spacing,
+                root=self.root_spacing,
+            ),
+        )
+
+
+MAKING, PRODUCING = Making(), Producing()
+
+
+def suffixes_of(formats: list[str] | None) -> tuple[str, ...]:
+    """Return the suffixes of the formats that are asked for, none by default."""
+    from bladegen.cli.texts import suffixes
+    from bladegen.exports.exporters import FORMATS
+
+    return suffixes(formats, FORMATS) if formats else ()
+
+
+def grouped(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of each group among its parameters, in the group's place."""
+    own = inspect.signature(command)
+    groups: dict[str, Any] = {}
+    parameters: list[inspect.Parameter] = []
+    for parameter in own.parameters.values():
+        if not is_dataclass(parameter.annotation):
+            parameters.append(parameter)
+            continue
+        groups[parameter.name] = parameter.annotation
+        parameters += [
+            parameter.replace(
+                name=field.name,
+                annotation=_in_panel(field.type, parameter.annotation),
+                default=field.default,
+            )
+            for field in fields(parameter.annotation)
+        ]
+
+    @wraps(command)
+    def whole(**given: Any) -> None:
+        _COMMAND.set(_typed(command.__name__, parameters, given))
+        made = {
+            name: group(**{field.name: given.pop(field.name) for field in fields(group)})
+            for name, group in groups.items()
+        }
+        command(**given, **made)
+
+    whole.__dict__["__signature__"] = own.replace(parameters=parameters)
+    whole.__annotations__ = {one.name: one.annotation for one in parameters}
+    return whole
+
+
+_COMMAND: ContextVar[str] = ContextVar("what was typed", default="")
+UNTOLD = ("output", "jobs", "dask", "resume")  # options that change no file
+
+
+def _typed(name: str, parameters: list[inspect.Parameter], given: dict[str, Any]) -> str:
+    """Return a command as files tell it: without folders, defaults and what changes no file."""
+    words = ["bladegen", name]
+    for parameter in parameters:
+        value = given[parameter.name]
+        if value == parameter.default or parameter.name in UNTOLD:
+            continue
+        option = get_args(parameter.annotation)[1]
+        values = value if isinstance(value, list) else [value]
+        if isinstance(option, typer.models.ArgumentInfo):
+            words += [Path(str(one)).name for one in values]
+            continue
+        said = next(
+            (
+                flag
+                for flag in (option.default, *(option.param_decls or ()))
+                if isinstance(flag, str) and flag.startswith("--")
+            ),
+            "--" + parameter.name.replace("_", "-"),
+        )
+        for one in values:
+            words += [said] if one is True else [said, Path(str(one)).name]
+    return shlex.join(words)
+
+
+def _in_panel(annotation: Any, group: Any) -> Any:
+    """Return an option that the help shows under its group's heading."""
+    kind, option = get_args(annotation)
+    shown = copy(option)
+    shown.rich_help_panel = option.rich_help_panel or group.__doc__.rstrip(".")
+    return Annotated[kind, shown]

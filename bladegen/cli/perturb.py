@@ -1,0 +1,108 @@
+"""The options that perturb a blade, given once to every command that takes them."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+__all__ = ["NO_CHANGES", "Changes", "ChordLine"]
+
+
+class ChordLine(StrEnum):
+    """What a change of shape does with the chord line."""
+
+    kept = "kept"
+    paper = "paper"
+
+
+@dataclass(frozen=True)
+class Changes:
+    """How a blade is perturbed."""
+
+    pga: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="t1,t2,...[@ETA]",
+            help="Coordinates along the modes in rad; with @ETA repeated, knots over span.",
+        ),
+    ] = None
+    space: Annotated[
+        Path | None, typer.Option(help="A space made by `space build`; the bundled one if not.")
+    ] = None
+    thickness: Annotated[float, typer.Option(help="Thickness times this; 1 changes nothing.")] = 1
+    camber: Annotated[
+        float, typer.Option(help="diag(2 - s, s), chord against thickness; 1 changes nothing.")
+    ] = 1
+    chord: Annotated[
+        float, typer.Option(help="Chord times this at the same thickness in metres; 1 is none.")
+    ] = 1
+    twist: Annotated[float, typer.Option(help="Added to the twist, in deg; 0 changes nothing.")] = 0
+    chord_scale: Annotated[float, typer.Option(help="Sections times this; 1 is none.")] = 1
+    twist_scale: Annotated[float, typer.Option(help="Twist times this; 1 is none.")] = 1
+    prebend_scale: Annotated[float, typer.Option(help="Prebend times this; 1 is none.")] = 1
+    window: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FROM,TO", help="Where the changes fade in; past round roots if not given."
+        ),
+    ] = None
+    chord_line: Annotated[
+        ChordLine,
+        typer.Option(
+            help="Keep chord line and nose where the baseline has them under --pga, or leave them "
+            "where the paper's formula takes them."
+        ),
+    ] = ChordLine.kept
+    allow_extrapolation: Annotated[
+        bool, typer.Option("--allow-extrapolation", help="Go beyond the space's data.")
+    ] = False
+    allow_odd: Annotated[
+        bool,
+        typer.Option("--allow-odd", help="Take sections with noses, tails or waves of no airfoil."),
+    ] = False
+    name: Annotated[str | None, typer.Option(help="Of the perturbed blade and its files.")] = None
+
+    @property
+    def asked(self) -> bool:
+        """Whether anything is to change."""
+        shape = bool(self.pga)
+        return shape or any(getattr(self, key) != getattr(Changes, key) for key in AFFINE)
+
+    def shape_space(self) -> Any:
+        """Return the shape space that coordinates belong to."""
+        from bladegen.shapes.shape_space import ShapeSpace
+
+        return ShapeSpace.load(self.space) if self.space else ShapeSpace.bundled()
+
+    def applied(self, blade: Any) -> Any:
+        """Return the blade with the changes."""
+        from math import radians
+
+        from bladegen.cli.texts import coordinates, span_window
+
+        t = coordinates(self.pga or [])
+        amounts = {key: float(getattr(self, key)) for key in AFFINE}
+        return blade.perturbed(
+            None if t is None else self.shape_space(),
+            () if t is None else t,
+            **(amounts | {"twist": radians(self.twist)}),
+            window=None if self.window is None else span_window(self.window),
+            chord_line=self.chord_line,
+            allow_extrapolation=self.allow_extrapolation,
+            allow_odd=self.allow_odd,
+            name=self.name or f"{blade.name}-perturbed",
+        )
+
+
+AFFINE = (
+    "thickness",
+    "camber",
+    "chord",
+    "twist",
+    "chord_scale",
+    "twist_scale",
+    "prebend_scale",
+)
+NO_CHANGES = Changes()

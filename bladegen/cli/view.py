@@ -1,0 +1,266 @@
+"""`bladegen preview` and `bladegen plot`: blades to look at."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen.cli.check import blade_of
+from bladegen.cli.options import LANDMARKS, MAKING, BladeName, Landmarks, Making, ending_in, grouped
+from bladegen.cli.perturb import NO_CHANGES, Changes
+from bladegen.cli.terminal import progress_bar, variants_bar
+from bladegen.errors import BladegenError
+from bladegen.views.keys import help_text
+
+__all__ = ["KEYS", "plot", "preview"]
+
+KEYS = help_text()
+
+
+class Colour(StrEnum):
+    """What surfaces are coloured by."""
+
+    plain = "plain"
+    curvature = "curvature"
+    distance = "distance"
+
+
+class What(StrEnum):
+    """Which diagrams are drawn."""
+
+    planform = "planform"
+    sections = "sections"
+    path = "path"
+    curvature = "curvature"
+    thickness = "thickness"
+    combs = "combs"
+    all = "all"
+
+
+class Kind(StrEnum):
+    """Files of diagrams."""
+
+    png = "png"
+    svg = "svg"
+    pdf = "pdf"
+
+
+@grouped
+def preview(
+    blade: Annotated[
+        str | None,
+        typer.Argument(metavar="[BLADE]", help="A bundled blade's name, or a definition's file."),
+    ] = None,
+    compare: Annotated[
+        tuple[str, str] | None,
+        typer.Option(metavar="A B", help="Instead: A, coloured by its distance from B."),
+    ] = None,
+    screenshot: Annotated[
+        Path | None,
+        typer.Option(metavar="PNG", help="Write a picture.", callback=ending_in(".png")),
+    ] = None,
+    html: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="HTML",
+            help="Write a page that turns in any browser, offline.",
+            callback=ending_in(".html", ".htm"),
+        ),
+    ] = None,
+    gif: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="GIF", help="Write a sweep through shapes.", callback=ending_in(".gif")
+        ),
+    ] = None,
+    mp4: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MP4",
+            help="The same as a film (extra `video`).",
+            callback=ending_in(".mp4"),
+        ),
+    ] = None,
+    sweep: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=LOW:HIGH",
+            help="What a sweep moves, there and back, such as t2=-0.1:0.05 or twist=-3:3 in deg; "
+            "repeated ones move together; half of the data's range of t1 if not given.",
+        ),
+    ] = None,
+    frames: Annotated[int, typer.Option(help="Pictures of a sweep, there and back.")] = 40,
+    colour: Annotated[
+        Colour | None,
+        typer.Option(help="What colours show; distance for a perturbed blade, if not given."),
+    ] = None,
+    changes: Changes = NO_CHANGES,
+    landmarks: Landmarks = LANDMARKS,
+    making: Making = MAKING,
+) -> None:
+    """Look at a blade: in a window, or as a picture, a page, a GIF or a film."""
+    if compare is not None:
+        if blade is not None or gif is not None or mp4 is not None or changes.asked:
+            raise BladegenError(
+                "compare: takes two files or blades, --screenshot or --html, and nothing else"
+            )
+        _compare(*compare, screenshot, html, making.airfoils)
+        return
+    if blade is None:
+        raise BladegenError("preview: name a blade (`bladegen list` shows the bundled ones)")
+    made = making.blade(blade, landmarks)
+    shown, baseline = (changes.applied(made), made) if changes.asked else (made, None)
+    colouring = colour or (Colour.plain if baseline is None else Colour.distance)
+    if gif is not None or mp4 is not None:
+        _sweep(shown, changes.shape_space(), sweep or [], frames, gif, mp4)
+    elif sweep is not None:
+        raise BladegenError("sweep: needs --gif or --mp4")
+    _show(shown, baseline, colouring.value, screenshot, html, window=gif is None and mp4 is None)
+
+
+def _show(
+    blade: Any,
+    baseline: Any,
+    colour: str,
+    screenshot: Path | None,
+    html: Path | None,
+    *,
+    window: bool,
+) -> None:
+    """Write the picture and the page that are asked for, or open a window if nothing is."""
+    from bladegen.support.files import replacing
+    from bladegen.views import page
+    from bladegen.views import preview as view
+    from bladegen.views.blade_scene import scene_of
+
+    if screenshot is not None:
+        with progress_bar() as progress, replacing(screenshot) as temporary:
+            progress("rendering")
+            view.picture(blade, temporary, baseline=baseline, colour=colour)
+        typer.echo(f"wrote {screenshot}")
+    if html is not None:
+        with progress_bar() as progress, replacing(html) as temporary:
+            progress("making the page")
+            found = scene_of(blade, baseline, landmarks=page.LANDMARKS)
+            page.write_page(found, temporary, colour=colour)
+        typer.echo(f"wrote {html}")
+    if window and screenshot is None and html is None:
+        view.require_window()
+        view.show(scene_of(blade, baseline), colour=colour)
+
+
+def _sweep(
+    blade: Any, space: Any, texts: list[str], count: int, gif: Path | None, mp4: Path | None
+) -> None:
+    """Render a sweep once and write it as asked."""
+    from bladegen.cli.texts import factor_bounds
+    from bladegen.support.files import replacing
+    from bladegen.views import sweep
+    from bladegen.views.tables import megabytes
+
+    motion = sweep.Motion(blade, space, factor_bounds(texts, "sweep"), count)
+    if mp4 is not None:
+        sweep.require_encoder(mp4)
+    with variants_bar(count, "frames") as progress:
+        images = list(sweep.frames(motion, progress=progress))
+    for path, write in ((gif, sweep.write_gif), (mp4, sweep.write_mp4)):
+        if path is not None:
+            with replacing(path) as temporary:
+                write(images, temporary)
+            typer.echo(f"wrote {path}: {count} frames, {megabytes(path.stat().st_size)}")
+
+
+def _compare(
+    one: str, other: str, screenshot: Path | None, html: Path | None, airfoils: Path | None
+) -> None:
+    """Show a surface coloured by its distance from another one."""
+    from bladegen.support.files import replacing
+    from bladegen.views import comparison
+    from bladegen.views import preview as view
+    from bladegen.views.page import write_page
+
+    title = f"{one} against {other}"
+    with progress_bar() as progress:
+        progress("reading")
+        surfaces = [
+            comparison.surface_of(blade_of(name, airfoils) or Path(name)) for name in (one, other)
+        ]
+        progress("measuring distances")
+        found = comparison.compared(*surfaces)
+        progress("drawing")
+        if screenshot is not None:
+            with replacing(screenshot) as temporary:
+                comparison.draw(found, title, temporary)
+        if html is not None:
+            with replacing(html) as temporary:
+                write_page(comparison.scene(found, title), temporary, colour="distance")
+    for note in found.notes:
+        typer.echo(f"note: {note}")
+    for path in (screenshot, html):
+        if path is not None:
+            typer.echo(f"wrote {path}")
+    if screenshot is None and html is None:
+        view.require_window()
+        view.show(comparison.scene(found, title), colour="distance")
+
+
+@grouped
+def plot(
+    blade: BladeName,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE|DIR", help="A file, or a folder.")
+    ] = Path(),
+    what: Annotated[
+        list[What] | None, typer.Option(help="Which diagrams; may be repeated; all if not given.")
+    ] = None,
+    kind: Annotated[
+        Kind | None,
+        typer.Option(
+            "--format", help="Of the files in a folder, png if not given; a file's suffix says its."
+        ),
+    ] = None,
+    changes: Changes = NO_CHANGES,
+    landmarks: Landmarks = LANDMARKS,
+    making: Making = MAKING,
+) -> None:
+    """Draw diagrams of a blade.
+
+    Planform, sections, path on the Grassmannian, curvature, thickness, and its airfoils' combs.
+
+    A perturbed blade is drawn over its baseline.
+    """
+    from bladegen.support.files import folder, replacing, require_suffix, safe_stem
+    from bladegen.views.blade_plots import PLOTS
+    from bladegen.views.plots import SUFFIXES, save_figure, save_pages
+
+    wanted = list(dict.fromkeys(what or [What.all]))
+    chosen = list(PLOTS) if What.all in wanted else [one.value for one in wanted]
+    single = output.suffix.lower() in SUFFIXES or (bool(output.suffix) and not output.is_dir())
+    if single:
+        require_suffix(output, SUFFIXES if kind is None else (f".{kind}",), "--output")
+    if single and len(chosen) > 1 and output.suffix.lower() != ".pdf":
+        raise BladegenError(
+            f"output: got {output} for {len(chosen)} diagrams, must be a folder or a .pdf; or "
+            "choose one with --what"
+        )
+    made = making.blade(blade, landmarks)
+    shown, baseline = (changes.applied(made), made) if changes.asked else (made, None)
+    with progress_bar() as progress:
+        if single and output.suffix.lower() == ".pdf":
+            progress("drawing")
+            with replacing(output) as temporary:
+                save_pages((PLOTS[name].draw(shown, baseline) for name in chosen), temporary)
+            files = [output]
+        else:
+            stem = safe_stem(shown.name)
+            files = [
+                output if single else folder(output) / f"{stem}-{name}.{kind or Kind.png}"
+                for name in chosen
+            ]
+            for name, file in zip(chosen, files, strict=True):
+                progress(f"drawing {name}")
+                with replacing(file) as temporary:
+                    save_figure(PLOTS[name].draw(shown, baseline), temporary)
+    for file in files:
+        typer.echo(f"wrote {file}")

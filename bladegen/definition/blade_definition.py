@@ -1,0 +1,316 @@
+"""Blade definitions: airfoils at stations and distributions over span, as a file gives them.
+
+Everything is in metres and radians, in the blade frame (origin at the root on the pitch
+axis, x to the suction side, y to the trailing edge, z to the tip).  Span is `eta` in
+[0, 1], root to tip: the nondimensional grid of the file, whatever it measures there, since
+the reference axis is given on the same grid.  Layout and names follow windIO.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladegen.airfoils.polars import Polar
+from bladegen.definition.distribution import SMALLEST_STEP, Distribution, Interpolant, pchip, united
+from bladegen.errors import DefinitionError, Finding
+from bladegen.support.arguments import amount, instance, numbers, shown
+from bladegen.support.arrays import Array, ArrayLike, readonly
+
+__all__ = [
+    "SMALLEST_RISE",
+    "SMALLEST_STEP",
+    "Airfoil",
+    "BladeDefinition",
+    "Distribution",
+    "Interpolant",
+    "ReferenceAxis",
+    "Rotor",
+    "Station",
+    "pchip",
+    "stations_by_thickness",
+    "united",
+]
+
+MIN_AIRFOIL_POINTS = 3
+SMALLEST_SIZE = 1e-6  # m of a chord, chords of a thickness; a tip may run out to a point, all but
+SMALLEST_RISE = 1e-9  # m, of the axis' z from one grid point to the next
+THICKNESS_RIPPLE = 1e-4  # published curves ripple by 1e-5 about the thinnest airfoil (DTU 10 MW)
+AT_END = 1e-6  # of the span: a curve that ends level meets its end value as much too early
+OVER_SPAN = "a bladegen.Distribution; Distribution.constant(value) is the same all over"
+STATIONS = "a tuple of bladegen.Station"
+QUANTITIES = (
+    "chord",
+    "twist",
+    "section_offset_y",
+    "pitch_axis",
+    "section_offset_x",
+    "relative_thickness",
+)
+MAX_AIRFOIL_POINTS = 5_000  # far above any published airfoil (399); bounds time and memory
+
+
+@dataclass(frozen=True)
+class Airfoil:
+    """A closed or open airfoil contour, as its file gives it.
+
+    Parameters
+    ----------
+    name : str
+        The airfoil's name; free text, never used as a path.
+    coordinates : (m, 2) array
+        Points in chords, trailing edge -> leading edge -> trailing edge, either side first.
+    relative_thickness : float, optional
+        Nominal thickness over chord, as the file states it.
+    polars : tuple of Polar
+        What is known of its aerodynamics; it shapes nothing.
+    aerodynamic_center : float, optional
+        Where polars are taken about, from the leading edge over the chord.
+    """
+
+    name: str
+    coordinates: Array
+    relative_thickness: float | None = None
+    polars: tuple[Polar, ...] = ()
+    aerodynamic_center: float | None = None
+
+    def __post_init__(self) -> None:
+        instance(self.name, str, "airfoil: name", "a text", DefinitionError)
+        what = f"airfoil {self.name!r}: coordinates"
+        points = readonly(numbers(self.coordinates, what, DefinitionError, "rows of x and y"))
+        if points.ndim != 2 or points.shape[1] != 2:
+            raise DefinitionError(
+                f"airfoil {self.name!r}: coordinates must be rows of x and y, got shape "
+                f"{points.shape}"
+            )
+        if not MIN_AIRFOIL_POINTS <= len(points) <= MAX_AIRFOIL_POINTS:
+            raise DefinitionError(
+                f"airfoil {self.name!r}: {len(points)} points, allowed are "
+                f"{MIN_AIRFOIL_POINTS} to {MAX_AIRFOIL_POINTS}"
+            )
+        if not np.isfinite(points).all():
+            row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            raise DefinitionError(
+                f"airfoil {self.name!r}: point {row} is {tuple(points[row].tolist())}, "
+                "must be finite"
+            )
+        object.__setattr__(self, "coordinates", points)
+
+
+@dataclass(frozen=True)
+class Station:
+    """An airfoil at a span fraction."""
+
+    eta: float
+    airfoil: Airfoil
+
+    def __post_init__(self) -> None:
+        if numbers(self.eta, "station: eta", DefinitionError, "a span fraction").ndim:
+            raise DefinitionError(f"station: eta: got {shown(self.eta)}, must be a span fraction")
+        instance(self.airfoil, Airfoil, "station: airfoil", "a bladegen.Airfoil", DefinitionError)
+
+
+@dataclass(frozen=True)
+class ReferenceAxis:
+    """The curve that carries the sections: x, y, z over span [m], blade frame."""
+
+    x: Distribution
+    y: Distribution
+    z: Distribution
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y", "z"):
+            instance(getattr(self, name), Distribution, f"axis: {name}", OVER_SPAN, DefinitionError)
+
+    def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
+        """Return points, or `nu`-th derivatives, of shape (..., 3) at `eta`."""
+        return np.stack([self.x(eta, nu), self.y(eta, nu), self.z(eta, nu)], axis=-1)
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """What a file says of the rotor around the blade; nothing here shapes the blade."""
+
+    blades: int = 3
+    hub_radius: float | None = None
+    diameter: float | None = None
+    cone: float | None = None
+    tilt: float | None = None
+    hub_drag: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if value is not None:
+                amount(value, f"rotor: {name}", DefinitionError)
+
+
+@dataclass(frozen=True)
+class BladeDefinition:
+    """A blade as its designer defines it: airfoils at stations, distributions over span.
+
+    Parameters
+    ----------
+    name : str
+        Short name; free text, made safe before it becomes part of a file name.
+    stations : tuple of Station
+        At least two, at strictly increasing span fractions.
+    chord : Distribution
+        Chord [m], positive.
+    twist : Distribution
+        Twist [rad]; positive moves the leading edge upwind.
+    axis : ReferenceAxis
+        The reference axis [m]; z increases.
+    section_offset_y : Distribution, optional
+        Leading edge to reference axis along the chord [m] (windIO 2).
+    pitch_axis : Distribution, optional
+        The same as a fraction of the chord (windIO 1); exactly one of both is given.
+    section_offset_x : Distribution, optional
+        Axis offset normal to the chord, positive toward the suction side [m] (windIO 2).
+    relative_thickness : Distribution, optional
+        Thickness over chord; where given it rules between stations.
+    rotor : Rotor
+        Facts on the rotor.
+    description, source, format : str
+        Free text; the file it was read from, and in which format that is.
+    findings : tuple of Finding
+        What was mended or looks odd.
+    """
+
+    name: str
+    stations: tuple[Station, ...]
+    chord: Distribution
+    twist: Distribution
+    axis: ReferenceAxis
+    section_offset_y: Distribution | None = None
+    pitch_axis: Distribution | None = None
+    section_offset_x: Distribution | None = None
+    relative_thickness: Distribution | None = None
+    rotor: Rotor = Rotor()
+    description: str = ""
+    source: str = ""
+    format: str = ""
+    findings: tuple[Finding, ...] = ()
+
+    def __post_init__(self) -> None:
+        self._require_kinds()
+        etas = [station.eta for station in self.stations]
+        if len(etas) < 2:
+            raise DefinitionError(f"{self.name}: {len(etas)} stations, at least 2 are needed")
+        rising = bool(np.all(np.diff(etas) >= SMALLEST_STEP))
+        if not (etas[0] >= 0 and etas[-1] <= 1 and rising):
+            raise DefinitionError(
+                f"{self.name}: stations must increase strictly within 0 to 1, got "
+                + ", ".join(f"{eta:g}" for eta in etas)
+            )
+        if (self.section_offset_y is None) == (self.pitch_axis is None):
+            raise DefinitionError(
+                f"{self.name}: exactly one of section_offset_y and pitch_axis must be given"
+            )
+        self._require_positive("chord", self.chord, "m")
+        if self.relative_thickness is not None:
+            self._require_positive("relative_thickness", self.relative_thickness, "of chord")
+        z = self.axis.z
+        level = np.flatnonzero(np.diff(z.values) < SMALLEST_RISE)
+        if level.size:
+            i = int(level[0])
+            raise DefinitionError(
+                f"{self.name}: reference axis z must increase from root to tip, got "
+                f"{z.values[i]:g} then {z.values[i + 1]:g} m at eta = {z.grid[i]:g} and "
+                f"{z.grid[i + 1]:g}"
+            )
+
+    def _require_kinds(self) -> None:
+        instance(self.name, str, "name", "a text", DefinitionError)
+        instance(self.stations, (tuple, list), f"{self.name}: stations", STATIONS, DefinitionError)
+        for station in self.stations:
+            instance(station, Station, f"{self.name}: stations", STATIONS, DefinitionError)
+        for name in QUANTITIES:
+            value = getattr(self, name)
+            if value is not None or name in ("chord", "twist"):
+                instance(value, Distribution, f"{self.name}: {name}", OVER_SPAN, DefinitionError)
+        for name, kind in (("axis", ReferenceAxis), ("rotor", Rotor)):
+            must = f"a bladegen.{kind.__name__}"
+            instance(getattr(self, name), kind, f"{self.name}: {name}", must, DefinitionError)
+
+    def _require_positive(self, field: str, quantity: Distribution, unit: str) -> None:
+        bad = np.flatnonzero(quantity.values < SMALLEST_SIZE)
+        if bad.size:
+            i = int(bad[0])
+            raise DefinitionError(
+                f"{self.name}: {field} must be positive, at least {SMALLEST_SIZE:g} {unit}, got "
+                f"{quantity.values[i]:g} at eta = {quantity.grid[i]:g} (entry {i})"
+            )
+
+    def offset_y(self, eta: ArrayLike) -> Array:
+        """Return the distance from leading edge to reference axis along the chord [m]."""
+        if self.section_offset_y is not None:
+            return self.section_offset_y(eta)
+        assert self.pitch_axis is not None  # __post_init__ saw to it
+        return self.pitch_axis(eta) * self.chord(eta)
+
+    def offset_x(self, eta: ArrayLike) -> Array:
+        """Return the axis offset normal to the chord, positive toward suction [m]."""
+        if self.section_offset_x is None:
+            return np.zeros(np.shape(eta))
+        return self.section_offset_x(eta)
+
+    @property
+    def length(self) -> float:
+        """Blade length along z, root to tip [m]."""
+        return float(self.axis.z(1.0) - self.axis.z(0.0))
+
+
+def stations_by_thickness(
+    airfoils: Sequence[tuple[float, Airfoil]], relative_thickness: Distribution
+) -> tuple[Station, ...]:
+    """Place airfoils where the thickness distribution crosses their own thickness.
+
+    Parameters
+    ----------
+    airfoils : sequence of (thickness, Airfoil)
+        Each airfoil with its own relative thickness.
+    relative_thickness : Distribution
+        Thickness over span, falling from root to tip up to small ripples.
+
+    Returns
+    -------
+    tuple of Station
+        From thick to thin; the thickest and the thinnest hold to the ends of the blade.
+
+    Raises
+    ------
+    DefinitionError
+        If an airfoil's thickness is not crossed by the distribution.
+    """
+    grid = np.unique(np.concatenate([relative_thickness.grid, np.linspace(0.0, 1.0, 2001)]))
+    falling = np.minimum.accumulate(relative_thickness(grid))
+    ordered = sorted(airfoils, key=lambda pair: -pair[0])
+    stations = []
+    for thickness, airfoil in ordered:
+        level = float(np.clip(thickness, falling[-1], falling[0]))
+        if abs(level - thickness) > THICKNESS_RIPPLE:
+            raise DefinitionError(
+                f"airfoil {airfoil.name!r}: relative thickness {thickness:g} is not met by the "
+                f"distribution, which runs from {falling[0]:g} to {falling[-1]:g}"
+            )
+        first = int(np.argmax(falling <= level))
+        eta = _crossing(relative_thickness, grid, first, level)
+        if min(eta, 1.0 - eta) < AT_END:
+            eta = float(round(eta))
+        stations.append(Station(eta, airfoil))
+    if stations[0].eta > 0:
+        stations.insert(0, Station(0.0, stations[0].airfoil))
+    if stations[-1].eta < 1:
+        stations.append(Station(1.0, stations[-1].airfoil))
+    return tuple(stations)
+
+
+def _crossing(quantity: Distribution, grid: Array, first: int, level: float) -> float:
+    """Bisect for the place in (grid[first - 1], grid[first]] where `quantity` meets `level`."""
+    if first == 0:
+        return float(grid[0])
+    low, high = float(grid[first - 1]), float(grid[first])
+    for _ in range(60):  # halves 5e-4 to below the spacing of doubles
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if quantity(middle) > level else (low, middle)
+    return high

@@ -1,0 +1,310 @@
+"""From a blade to a folder of files and a report on what was made and how good it is.
+
+The report's figures are measured on the files: STEP files are read again, meshes are checked
+as they lie on the disk.  Lengths are metres unless a name says otherwise.
+"""
+
+import json
+import logging
+import platform
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from bladegen import __version__
+from bladegen.blade.blade import Blade
+from bladegen.cad import exchange, solids
+from bladegen.cad.rotor import Rotor, write_glb, write_step
+from bladegen.errors import ExportError, PromiseError
+from bladegen.exports import exporters, marks
+from bladegen.exports.inventory import REPORT, entry_of, others
+from bladegen.exports.provenance import Provenance, word
+from bladegen.formats import writing as writers
+from bladegen.measures import checks
+from bladegen.measures.spanwise import spanwise, write_csv
+from bladegen.support.files import alone, folder, replacing, safe_stem
+from bladegen.surface import mesh
+from bladegen.surface.grid_quality import grid_figures
+from bladegen.surface.net import Deviation
+from bladegen.views import combs
+
+__all__ = ["DEFAULT_FORMATS", "build", "report_path"]
+
+logger = logging.getLogger(__name__)
+
+DEFAULT_FORMATS = ("step", "stl", "glb", "png")
+LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk", "h5py")
+SPANWISE = ".spanwise.csv"
+SPANWISE_ROWS = 60  # in the report; the CSV file holds all
+FROM_FILE = ("solids", "faces", "valid", "closed", "area_m2", "bounds_m")
+_MESHES = (".stl", ".glb", ".ply", ".obj", ".3mf")  # what trimesh reads
+
+
+def build(
+    blade: Blade,
+    target: Path,
+    *,
+    formats: Sequence[str] = DEFAULT_FORMATS,
+    options: exporters.Options | None = None,
+    rotor: Rotor | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> dict[str, Any]:
+    """Write a blade's files and its report into a folder.
+
+    Parameters
+    ----------
+    blade : Blade
+        What to build.
+    target : Path
+        The folder; made if it is not there.
+    formats : sequence of str
+        Suffixes, with or without their dot; with "png" come curvature combs of the airfoils,
+        ``<name>.combs.png``.
+    options : Options, optional
+        How products are made.
+    rotor : Rotor, optional
+        Write the whole rotor too, as ``<name>.rotor.step`` and ``<name>.rotor.glb``.
+    progress : callable
+        Told what is being done.
+
+    Returns
+    -------
+    dict
+        The report, as written to ``<name>.report.json``.
+
+    Raises
+    ------
+    PromiseError
+        If the solid misses its tolerance (`ToleranceError`) or its size (`SizeError`); the other
+        files and the report are written all the same, and the solid is kept under another name.
+    ExportError
+        If a format is not known, the folder cannot be written, or another run writes this blade
+        there.
+    """
+    from threadpoolctl import threadpool_limits
+
+    # one thread: the same sums in the same order, whatever the machine
+    with alone(folder(target), safe_stem(blade.name)), threadpool_limits(1):
+        return _built(blade, target, formats, options, rotor, progress)
+
+
+def _built(
+    blade: Blade,
+    target: Path,
+    formats: Sequence[str],
+    options: exporters.Options | None,
+    rotor: Rotor | None,
+    progress: Callable[[str], None],
+) -> dict[str, Any]:
+    stem = safe_stem(blade.name)
+    paths = [target / f"{stem}.{suffix.lower().lstrip('.')}" for suffix in formats]
+    for path in paths:
+        if exporters.format_of(path).kind is exporters.Kind.definition and blade.mirrored:
+            raise ExportError(writers.MIRRORED)
+    options = options or exporters.Options()
+    products = exporters.Products(blade, options, progress)
+    ledger = _Ledger(progress)
+    report: dict[str, Any] = {
+        "blade": blade.name,
+        "source": Path(blade.definition.source).name,
+        "bladegen": __version__,
+        "versions": {"python": platform.python_version(), **_versions()},
+        "settings": _settings(blade, options),
+        "changes": list(blade.changes),
+    }
+    progress("measuring the blade")
+    with ledger.timed("measuring the blade"):
+        report["figures"] = checks.check_blade(blade).figures
+        report["airfoils"] = combs.figures(blade)
+    miss: PromiseError | None = None
+    for path in paths:
+        made = path
+        with ledger.timed(path.suffix.lstrip(".")):
+            progress(f"writing {path.name}")
+            try:
+                exporters.write(products, path)
+            except PromiseError as error:
+                miss, made = miss or error, error.kept or path
+        kind = exporters.format_of(path).kind
+        ledger.note(made, products.made_from(kind, exporters.suffix_of(path)))
+        with ledger.timed("measuring the files"):
+            _measure(report, products, kind, made)
+    if rotor is not None:
+        report["rotor"] = asdict(rotor) | {"mirrored": blade.mirrored != rotor.mirrored}
+        miss = _rotor(rotor, products, target / f"{stem}.rotor", ledger) or miss
+    if any(path.suffix == ".png" for path in paths):
+        by = products.made_from(exporters.Kind.picture, ".png")
+        with ledger.writing(target / f"{stem}.combs.png", "combs", by) as temporary:
+            combs.draw(blade, temporary)
+    columns = spanwise(blade, blade.stations(options.stations))
+    by = products.made_from(exporters.Kind.table, ".csv")
+    with ledger.writing(target / f"{stem}{SPANWISE}", "spanwise", by) as temporary:
+        write_csv(columns, temporary)
+    some = slice(None, None, max(1, options.stations // SPANWISE_ROWS))
+    report["spanwise"] = {name: values[some].tolist() for name, values in columns.items()}
+    written = {entry["name"] for entry in ledger.files}
+    left, notes = others(target, stem, written, partial(_made_here, products))
+    report["files"] = ledger.files + left
+    report["remarks"] = [str(remark) for remark in (*products.remarks, *notes)]
+    report["seconds"] = {stage: round(spent, 3) for stage, spent in ledger.seconds.items()}
+    with replacing(report_path(target, blade.name)) as temporary:
+        temporary.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+    if miss is not None:
+        raise miss
+    return report
+
+
+def _rotor(
+    rotor: Rotor, products: exporters.Products, stem: Path, ledger: "_Ledger"
+) -> PromiseError | None:
+    """Write a rotor's two files; return what was asked of its solids and is not so."""
+    made, miss = stem.with_name(f"{stem.name}.step"), None
+    ledger.progress(f"writing {made.name}")
+    told = tuple((f"rotor_{key}", word(value)) for key, value in asdict(rotor).items())
+    solid, triangles = (
+        replace(by, settings=by.settings + told, id="")
+        for by in (
+            products.made_from(exporters.Kind.solid, ".step"),
+            products.made_from(exporters.Kind.triangles, ".glb"),
+        )
+    )
+    with ledger.timed("rotor"), replacing(made) as temporary:
+        write_step(rotor, products.solid, temporary)
+        marks.put(temporary, solid)
+    try:
+        exporters.require_size(products, made)
+    except PromiseError as error:
+        miss, made = error, error.kept or made
+    ledger.note(made, solid)
+    with ledger.writing(stem.with_name(f"{stem.name}.glb"), "rotor", triangles) as temporary:
+        write_glb(rotor, products.mesh, temporary)
+    return miss
+
+
+@dataclass(frozen=True)
+class _Ledger:
+    """What was written, and what time each stage took [s]."""
+
+    progress: Callable[[str], None]
+    files: list[dict[str, Any]] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Add the time spent within to a stage's."""
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            spent = time.perf_counter() - start
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
+            logger.debug("%s: %.2f s", stage, spent)
+
+    @contextmanager
+    def writing(self, path: Path, stage: str, made: Provenance) -> Iterator[Path]:
+        """Write a file under a temporary name within, mark it, and note it once it is whole."""
+        self.progress(f"writing {path.name}")
+        with self.timed(stage), replacing(path) as temporary:
+            yield temporary
+            marks.put(temporary, made)
+        self.note(path, made)
+
+    def note(self, path: Path, made: Provenance) -> None:
+        """Add a file that lies on the disk; a report that does not fit the file beside it shows."""
+        self.files.append(entry_of(path, made))
+
+
+def _made_here(products: exporters.Products, path: Path) -> Provenance | None:
+    """Return what a file of that name would be made from; None if its format is none of ours."""
+    try:
+        suffix = exporters.suffix_of(path)
+    except ExportError:
+        return None
+    table = path.name.endswith(SPANWISE)
+    kind = exporters.Kind.table if table else exporters.FORMATS[suffix].kind
+    return products.made_from(kind, suffix)
+
+
+def _measure(
+    report: dict[str, Any], products: exporters.Products, kind: exporters.Kind, path: Path
+) -> None:
+    """Add what a file of that kind gives to measure."""
+    if kind is exporters.Kind.solid:
+        products.progress("reading the solid again")
+        report["solid"] = _solid(products, path, report["figures"]["volume_m3"])
+    elif kind is exporters.Kind.grid:
+        report.setdefault("grid", grid_figures(products.grid))
+    elif path.suffix in _MESHES:
+        figures = checks.mesh_figures(mesh.read(path))
+        report.setdefault("meshes", {})[path.suffix.lstrip(".")] = figures
+
+
+def report_path(target: Path, name: str) -> Path:
+    """Return where the report on a blade of that name lies."""
+    return target / f"{safe_stem(name)}{REPORT}"
+
+
+def _solid(products: exporters.Products, path: Path, wanted: float) -> dict[str, Any]:
+    """Measure a STEP file as it lies on the disk, against the solid and the blade."""
+    solid = products.solid
+    again = checks.solid_figures(exchange.read(path), quick=True)
+    before = solids.quick_volume(solid.shape) / solids.MILLIMETRES**3
+    deviation = solid.deviation
+    return {
+        **{key: again[key] for key in FROM_FILE},
+        "face_names": [name for name, _ in solid.faces],
+        "sections": len(solid.net.v),
+        "poles": int(solid.net.poles.size // 3),
+        "volume_m3": solid.volume,
+        "tip_volume_m3": solid.tip_volume,  # of it, beyond the last section
+        "volume_against_sections": solid.net.volume() / wanted - 1.0,
+        "volume_change_on_reading": again["volume_m3"] / before - 1.0,
+        "deviation_mm": {
+            **_deviation(deviation),
+            "on_face": deviation.face,
+            "faces": {face: _deviation(part) for face, part in deviation.faces.items()},
+        },
+    }
+
+
+def _deviation(deviation: Deviation) -> dict[str, Any]:
+    """Return a deviation's figures [mm] and where the largest is."""
+    return {
+        "maximum": deviation.maximum * solids.MILLIMETRES,
+        "rms": deviation.rms * solids.MILLIMETRES,
+        "percentile_99": deviation.percentile99 * solids.MILLIMETRES,
+        "at_eta": deviation.eta,
+        "at_u": deviation.u,
+        "samples": deviation.samples,
+    }
+
+
+def _settings(blade: Blade, options: exporters.Options) -> dict[str, Any]:
+    return {
+        "landmarks": len(blade.u),
+        "path": blade.path.__name__,
+        "section_planes": blade.planes.__name__,
+        "trailing_edge": str(blade.trailing_edge),
+        "mirrored": blade.mirrored,
+        "tolerance_mm": options.tolerance * solids.MILLIMETRES,
+        "solid_sections": options.sections,
+        "mesh_stations": options.stations,
+        "tip": options.tip.__name__,
+        "mesh_unit": options.unit,
+        "grid": asdict(options.spacing),
+    }
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for library in LIBRARIES:
+        try:
+            found[library] = version(library)
+        except PackageNotFoundError:
+            continue
+    return found

@@ -1,0 +1,362 @@
+"""Families: many perturbed variants of one blade, planned by a design and tested.
+
+`family` plans variants and gives them one after the other as blades; `Family.block` makes the
+sections of many at once (`batch`), for files and for learning.  A variant whose sections cross
+themselves, lose their thickness, leave the data or are odd (`sanity`) is drawn again up to a
+limit, or kept and marked.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from bladegen.airfoils.chord_lines import KEPT, known_convention
+from bladegen.blade.blade import Blade
+from bladegen.blade.deformation import RANGES, AffineChange, Window
+from bladegen.errors import FamilyError
+from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.support.arguments import instance, one_of, whole
+from bladegen.support.arrays import Array, Indices, Mask
+from bladegen.support.files import safe_stem
+from bladegen.variants.batch import FAULTS, Batch, SectionBatch
+from bladegen.variants.designs import Design, factors
+from bladegen.variants.draws import Seed
+
+__all__ = ["BLOCK", "POLICIES", "Block", "Family", "family"]
+
+BLOCK = 64  # variants made at once; what a run may lose
+TRIES = 1000  # draws of one variant before it is kept and marked
+THINNEST = 0.05  # of the chord; a thinner section is no blade's
+SPANS = 100
+POLICIES = ("redraw", "keep")
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Neighbouring variants of a family.
+
+    Parameters
+    ----------
+    index : (b,) array of int
+        Their places in the family.
+    values : (b, d) array
+        Values of the factors [rad].
+    attempts : (b,) array of int
+        How many draws each took.
+    reasons : tuple of str
+        What is wrong with each; "" if nothing is.
+    refused : tuple of str
+        What was wrong with the first draw of each; "" if nothing was.
+    batch : Batch
+        Their sections.
+    """
+
+    index: Indices
+    values: Array
+    attempts: Indices
+    reasons: tuple[str, ...]
+    refused: tuple[str, ...]
+    batch: Batch
+
+    @property
+    def valid(self) -> Mask:
+        """Which variants are sound, (b,)."""
+        return np.array([not reason for reason in self.reasons])
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """A planned family of variants.  `family` makes one.
+
+    Parameters
+    ----------
+    blade : Blade
+        The baseline.
+    space : ShapeSpace, optional
+        Modes of deformation.
+    design : Design
+        Which variants.
+    window : Window
+        Where along the span they act.
+    eta : (k,) array
+        Span fractions of the sections that are made and tested.
+    invalid : str
+        "redraw" or "keep" variants that are not sound.
+    tries : int
+        Draws of one variant before it is kept and marked.
+    thinnest : float
+        Least relative thickness of a sound section.
+    chord_line : str
+        What a change of shape does with the chord line, as for `Blade.perturbed`.
+    allow_extrapolation, allow_odd : bool
+        Whether sections may leave the space's data, and be odd.
+    """
+
+    blade: Blade
+    space: ShapeSpace | None
+    design: Design
+    window: Window
+    eta: Array
+    invalid: str = "redraw"
+    tries: int = TRIES
+    thinnest: float = THINNEST
+    chord_line: str = KEPT
+    allow_extrapolation: bool = False
+    allow_odd: bool = False
+
+    def __post_init__(self) -> None:
+        must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
+        instance(self.blade, Blade, "blade", must, FamilyError)
+        instance(self.window, Window, "window", "a bladegen.Window(start, end)", FamilyError)
+        one_of(self.invalid, POLICIES, "invalid", FamilyError)
+        if whole(self.tries, "tries", FamilyError) < 1:
+            raise FamilyError(f"tries: got {self.tries}, must be at least 1")
+        known_convention(self.chord_line)
+        if self.space is not None:
+            must = "a ShapeSpace, such as bladegen.ShapeSpace.bundled()"
+            instance(self.space, ShapeSpace, "space", must, FamilyError)
+            object.__setattr__(self, "space", self.space.at(self.blade.u))
+
+    def __repr__(self) -> str:
+        return (
+            f"<Family of {self.blade.name}: {len(self)} variants, {self.design.kind}, seed "
+            f"{self.design.seed}, of {', '.join(self.design.what.names)}>"
+        )
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {entry.name: getattr(self, entry.name) for entry in fields(self)}
+
+    def __len__(self) -> int:
+        return len(self.design)
+
+    def __iter__(self) -> Iterator[Blade]:
+        for first in range(0, len(self), BLOCK):
+            index = np.arange(first, min(first + BLOCK, len(self)))
+            for place, values in zip(index, self._drawn(index), strict=True):
+                yield self._blade(int(place), values)
+
+    @cached_property
+    def _sections(self) -> SectionBatch:
+        return SectionBatch(self.blade, self.space, self.window, self.eta, self.chord_line)
+
+    def block(self, index: Indices, *, dtype: type = np.float64, measured: bool = False) -> Block:
+        """Make the sections of some variants, drawn again where they are not sound.
+
+        Parameters
+        ----------
+        index : (b,) array of int
+            Which variants.
+        dtype : type
+            Of the sections.
+        measured : bool
+            Measure areas, centroids and so on (`Batch.measures`).
+        """
+        made: dict[str, Any] = {"dtype": dtype, "measured": measured}
+        values = self.design.at(index)
+        if np.count_nonzero(self._left(values)) > len(index) // 2 and self._redraws:
+            refused = self._tested(values)  # sections of so many would be made in vain
+            values, attempts, reasons = self._redrawn(index, values, refused)
+            batch = self._sections.evaluate(*self._split(values), **made)
+            return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
+        batch = self._sections.evaluate(*self._split(values), **made)
+        refused = self._reasons(values, batch.faults, batch.relative_thickness, batch.looks)
+        values, attempts, reasons = self._redrawn(index, values, refused)
+        again = np.flatnonzero(attempts > 1)
+        if again.size:
+            batch.take(again, self._sections.evaluate(*self._split(values[again]), **made))
+        return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
+
+    @property
+    def _redraws(self) -> bool:
+        return self.invalid == "redraw" and self.design.redraws
+
+    def named(self, block: Block, place: int) -> Blade:
+        """Return one variant of a block as a blade."""
+        row = int(np.flatnonzero(block.index == place)[0])
+        return self._blade(place, block.values[row])
+
+    def variant(self, place: int) -> Blade:
+        """Return one variant as a blade, whether it is sound or not."""
+        place = whole(place, "variant", FamilyError)
+        if not 0 <= place < len(self):
+            raise FamilyError(f"variant: got {place}, allowed is 0 to {len(self) - 1}")
+        return self._blade(place, self._drawn(np.array([place]))[0])
+
+    def name(self, place: int) -> str:
+        """Return the name of a variant; names sort as their places do."""
+        digits = max(5, len(str(len(self) - 1)))
+        return f"{safe_stem(self.blade.name)}-{place:0{digits}d}"
+
+    def _blade(self, place: int, values: Array) -> Blade:
+        t, change = self._split(values[None])
+        single = {name: float(np.ravel(getattr(change, name))[0]) for name in RANGES}
+        return self.blade.untested(
+            self.space,
+            t[0],
+            replace(change, **single),
+            window=self.window,
+            chord_line=self.chord_line,
+            allow_extrapolation=True,
+            name=self.name(place),
+        )
+
+    def _split(self, values: Array) -> tuple[Array, AffineChange]:
+        return self.design.what.split(values, self._sections.modes)
+
+    def _drawn(self, index: Indices) -> Array:
+        """Return the values (b, d) of variants, after all redrawing."""
+        values = self.design.at(index)
+        return self._redrawn(index, values, self._tested(values))[0]
+
+    def _redrawn(
+        self, index: Indices, values: Array, reasons: list[str]
+    ) -> tuple[Array, Indices, list[str]]:
+        """Draw again what is not sound; return values, numbers of draws and what is left."""
+        values, reasons = values.copy(), list(reasons)
+        attempts = np.ones(len(index), dtype=np.int64)
+        if not self._redraws:
+            return values, attempts, reasons
+        again = np.flatnonzero([bool(reason) for reason in reasons])
+        for attempt in range(1, self.tries):
+            if not again.size:
+                break
+            values[again] = self.design.redrawn(index[again], attempt)
+            attempts[again] += 1
+            for row, reason in zip(again, self._tested(values[again]), strict=True):
+                reasons[row] = reason
+            again = again[[bool(reasons[row]) for row in again]]
+        return values, attempts, reasons
+
+    def _tested(self, values: Array) -> list[str]:
+        """Say what is wrong with variants (b, d), without making their sections."""
+        reasons = self._strayed(values)
+        near = np.flatnonzero([not reason for reason in reasons])
+        if near.size:
+            tested = self._sections.tested(*self._split(values[near]))
+            for row, reason in zip(near, self._reasons(values[near], *tested), strict=True):
+                reasons[row] = reason
+        return reasons
+
+    def _left(self, values: Array) -> Mask:
+        """Tell which variants (b, d) have a section that leaves the space's data, (b,)."""
+        domain, t = self._sections.domain, self._split(values)[0]
+        if domain is None or self.allow_extrapolation:
+            return np.zeros(len(values), dtype=bool)
+        left: Mask = np.any(domain.left(self._sections.step(t)), axis=1)
+        return left
+
+    def _strayed(self, values: Array) -> list[str]:
+        """Say which variants (b, d) leave their bounds or the space's data; "" if none does."""
+        reasons = self.design.what.outside(values)
+        domain, t = self._sections.domain, self._split(values)[0]
+        if domain is not None:
+            for row in np.flatnonzero(self._left(values)):
+                reasons[row] = reasons[row] or domain.said(self._sections.step(t[row : row + 1])[0])
+        return reasons
+
+    def _reasons(self, values: Array, faults: Indices, thickness: Array, looks: Array) -> list[str]:
+        """Say what is wrong with variants (b, d), first thing first; "" if nothing is."""
+        reasons = self._strayed(values)
+        for row in np.flatnonzero(faults.any(axis=1)):
+            k = int(np.argmax(faults[row] > 0))
+            reasons[row] = reasons[row] or f"{FAULTS[faults[row, k]]} at eta = {self.eta[k]:.4f}"
+        for row in np.flatnonzero(thickness.min(axis=1) < self.thinnest):
+            k = int(np.argmin(thickness[row]))
+            reasons[row] = reasons[row] or (
+                f"relative thickness {thickness[row, k]:.4f} at eta = {self.eta[k]:.4f} is below "
+                f"{self.thinnest:g}"
+            )
+        if self.allow_odd:
+            return reasons
+        odd = self._sections.oddities(looks)
+        for place in np.flatnonzero(odd.kinds.any(axis=1)).tolist():
+            k = int(np.argmax(odd.kinds[place] > 0))
+            said = f"{odd.said((place, k))} at eta = {self.eta[k]:.4f}"
+            reasons[place] = reasons[place] or said
+        return reasons
+
+
+def family(
+    blade: Blade,
+    space: ShapeSpace | None = None,
+    *,
+    count: int = 100,
+    seed: Seed = 0,
+    design: str | Design = "ellipsoid",
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    reach: float = 1.0,
+    window: Window | None = None,
+    spans: int = SPANS,
+    invalid: str = "redraw",
+    tries: int = TRIES,
+    chord_line: str = KEPT,
+    allow_extrapolation: bool = False,
+    allow_odd: bool = False,
+) -> Family:
+    """Plan a family of perturbed blades; iterate over it for the blades.
+
+    Parameters
+    ----------
+    blade : Blade
+        The baseline.
+    space : ShapeSpace, optional
+        Modes of deformation, such as `ShapeSpace.bundled()`; all its coordinates vary.
+    count : int
+        How many variants.
+    seed : int, None or anything that `numpy.random.default_rng` takes
+        Of the draws: variant i is the same for the same number.  A generator gives such a number
+        and moves on, None takes a fresh one; `Family.design.seed` and the manifest hold it.
+    design : str or Design
+        One of `designs.DESIGNS`, or a design of one's own (`designs.tabulated`).
+    bounds : mapping of str to (low, high), optional
+        What else varies and between which bounds: see `designs.factors`; twist in radians.
+    reach : float
+        Share of the space's bounds that is used.
+    window : Window, optional
+        Where along the span they act; by default as for `Blade.perturbed`.
+    spans : int
+        At how many spans sections are made and tested.
+    invalid : str
+        "redraw" variants that are not sound, up to `tries` draws, or "keep" them, marked.
+    chord_line : str
+        "kept" where the baseline has it, or as in the "paper": see `Blade.perturbed`.
+    allow_extrapolation, allow_odd : bool
+        Take variants whose sections leave the space's data, or are odd: see `Blade.perturbed`.
+
+    Raises
+    ------
+    DesignError, FamilyError, PerturbationError
+        If something asked for is not there or out of range.
+
+    >>> import bladegen as bg
+    >>> blade = bg.Blade.from_definition(bg.read("dtu10mw"))
+    >>> [variant.name for variant in bg.family(blade, bg.ShapeSpace.bundled(), count=2, seed=7)]
+    ['dtu10mw-00000', 'dtu10mw-00001']
+    """
+    must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
+    instance(blade, Blade, "blade", must, FamilyError)
+    if space is not None:
+        must = "a ShapeSpace, such as bladegen.ShapeSpace.bundled(), or None"
+        instance(space, ShapeSpace, "space", must, FamilyError)
+    if blade.mirrored:
+        raise FamilyError(
+            f"{blade.name}: families are made of the blade, not of its mirror image; mirror their "
+            "blades with mirror_image()"
+        )
+    if not isinstance(design, Design):
+        design = Design.of(factors(space, bounds, reach=reach), design, count, seed)
+    return Family(
+        blade,
+        space,
+        design,
+        Window.beyond_circles(blade.definition.stations) if window is None else window,
+        blade.stations(spans),
+        invalid,
+        tries,
+        chord_line=chord_line,
+        allow_extrapolation=allow_extrapolation,
+        allow_odd=allow_odd,
+    )

@@ -1,0 +1,249 @@
+"""A family's folder: what is in it, and how it comes to be there whole.
+
+    family.json        what the family is (`identity`) and how its files are made
+    manifest.parquet   one row a variant: factors, validity, volume, properties over span, files
+    sections.zarr      sections (count, spans, landmarks, 3) [m], span fractions `eta`, `u`
+    blades/            files of each variant in the formats asked for
+    parts/             while a run goes on: one Parquet file a finished block
+
+A block is written in this order: sections and blades first, its part last, under a temporary
+name that is changed when it is whole.  So a part says that its block is whole, and what a killed
+run leaves without its part is written again.
+"""
+
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.errors import ExportError, FamilyError
+from bladegen.families.family import BLOCK, Block
+from bladegen.families.forecasts import NoRoomError
+from bladegen.families.identity import differences
+from bladegen.support.files import alone, folder, replacing
+
+__all__ = ["FamilyFolder", "read_manifest", "sections_digest"]
+
+ZARR = "sections.zarr"
+FLOAT_TYPES = {"float32": np.float32, "float64": np.float64}
+
+
+@dataclass(frozen=True)
+class FamilyFolder:
+    """A folder that holds a family, or shall, in blocks of so many variants."""
+
+    path: Path
+    block: int = BLOCK
+
+    @property
+    def manifest(self) -> Path:
+        """The manifest of a finished family."""
+        return self.path / "manifest.parquet"
+
+    @property
+    def description(self) -> Path:
+        """What the family is."""
+        return self.path / "family.json"
+
+    @property
+    def blades(self) -> Path:
+        """Where the variants' own files lie."""
+        return self.path / "blades"
+
+    @property
+    def parts(self) -> Path:
+        """Where finished blocks are noted while a run goes on."""
+        return self.path / "parts"
+
+    def part(self, number: int) -> Path:
+        """Return the file that says that a block is whole."""
+        return self.parts / f"part-{number:06d}.parquet"
+
+    def begin(self, wanted: dict[str, Any], *, resume: bool) -> None:
+        """Make the folder a family's, or see that it is this family's.
+
+        Raises
+        ------
+        FamilyError
+            If the folder holds another family, or this one and nobody asked to go on.
+        """
+        folder(self.path)
+        wanted = json.loads(json.dumps(wanted))
+        if self.description.exists():
+            try:
+                found = json.loads(self.description.read_text(encoding="utf-8"))
+            except (OSError, ValueError):
+                found = {}
+            different = differences(wanted, found if isinstance(found, dict) else {})
+            if different:
+                raise FamilyError(
+                    f"{self.path}: holds another family ({'; '.join(different[:3])}); take "
+                    "another folder"
+                )
+            if not resume:
+                raise FamilyError(
+                    f"{self.path}: holds this family already, whole or in part; --resume goes on"
+                )
+        elif self.manifest.exists() or (self.store).exists():
+            raise FamilyError(f"{self.path}: holds data without family.json; take another folder")
+        else:
+            with replacing(self.description) as temporary:
+                temporary.write_text(json.dumps(wanted, indent=2) + "\n", encoding="utf-8")
+        folder(self.parts)
+
+    def alone(self) -> AbstractContextManager[None]:
+        """Hold the folder, so that no second run writes into it.
+
+        Raises
+        ------
+        ExportError
+            If another run holds it, or it cannot be written.
+        """
+        return alone(folder(self.path), "family")
+
+    @contextmanager
+    def undone_if_refused(self) -> Iterator[None]:
+        """Take away what was begun for a family that is refused, unless it was there before."""
+        fresh = not self.path.exists() or not any(
+            entry.exists() for entry in (self.description, self.manifest, self.store)
+        )
+        try:
+            yield
+        except NoRoomError:
+            if fresh:
+                for entry in (self.store, self.blades, self.parts):
+                    shutil.rmtree(entry, ignore_errors=True)
+                self.description.unlink(missing_ok=True)
+            raise
+
+    def bytes_of(self, number: int, names: Sequence[str]) -> int:
+        """Return the size of a whole block's part, and of the files of its variants."""
+        files = [self.part(number)]
+        for name in names:
+            for found in self.blades.glob(f"{name}[._-]*"):
+                files += (
+                    [found] if found.is_file() else [p for p in found.rglob("*") if p.is_file()]
+                )
+        return sum(file.stat().st_size for file in files)
+
+    def open_blocks(self, count: int) -> list[int]:
+        """Return the numbers of the blocks that are not whole yet."""
+        if self.manifest.exists():
+            return []
+        there = {path.name for path in self.parts.glob("part-*.parquet")}
+        return [i for i in range(-(-count // self.block)) if self.part(i).name not in there]
+
+    def make_sections(self, eta: Any, u: Any, count: int, dtype: str) -> None:
+        """Make the empty store of sections, if it is not there."""
+        import zarr
+
+        shape = (count, len(eta), len(u), 3)
+        try:
+            group = zarr.open_group(self.store, mode="a", zarr_format=3)
+            group.attrs.update({"unit": "m", "axes": "variant, span, landmark, xyz"})
+            group.require_array(
+                "sections",
+                shape=shape,
+                dtype=dtype,
+                chunks=(1, *shape[1:]),
+                shards=(self.block, *shape[1:]),
+                compressors=None,
+                dimension_names=("variant", "span", "landmark", "xyz"),
+            )
+            for name, values in (("eta", eta), ("u", u)):
+                if name not in group:
+                    group.create_array(name, data=np.array(values))
+        except OSError as error:
+            raise ExportError(f"{self.store}: cannot be written: {error.strerror}") from None
+
+    @property
+    def sections(self) -> Any:
+        """The Zarr array of sections."""
+        import zarr
+
+        return zarr.open_group(self.store, mode="r+")["sections"]
+
+    def write_block(self, number: int, block: Block, rows: dict[str, Any]) -> None:
+        """Write a block's sections, then its part of the manifest."""
+        import pyarrow.parquet as pq
+
+        start = int(block.index[0])
+        try:
+            self.sections[start : start + len(block.index)] = block.batch.sections
+            _flush(self.store / "sections" / "c" / str(number))
+        except OSError as error:
+            raise ExportError(
+                f"{self.store}: cannot be written: {error.strerror or error}"
+            ) from None
+        with replacing(self.part(number)) as temporary:
+            pq.write_table(_table(rows), temporary, compression="zstd")
+            _flush(temporary)
+
+    @property
+    def store(self) -> Path:
+        """The store of sections."""
+        return self.path / ZARR
+
+    def finish(self, count: int) -> None:
+        """Join the parts to the manifest, and tidy up."""
+        import pyarrow.parquet as pq
+
+        numbers = range(-(-count // self.block))
+        if not self.manifest.exists():
+            with replacing(self.manifest) as temporary:
+                schema = pq.read_schema(self.part(0))
+                with pq.ParquetWriter(temporary, schema, compression="zstd") as writer:
+                    for number in numbers:
+                        writer.write_table(pq.read_table(self.part(number)))
+                _flush(temporary)
+        shutil.rmtree(self.parts, ignore_errors=True)
+        for left in [*self.path.glob(f"{ZARR}/**/*.partial"), *self.blades.glob(".*")]:
+            left.unlink(missing_ok=True)  # what killed runs were writing
+
+
+def read_manifest(place: FamilyFolder, columns: Sequence[str]) -> dict[str, Any]:
+    """Return columns of a manifest: texts as lists, numbers as arrays."""
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(place.manifest, columns=list(columns))
+    return {
+        name: values.to_pylist() if str(values.type) == "string" else values.to_numpy()
+        for name, values in zip(table.column_names, table.columns, strict=True)
+    }
+
+
+def sections_digest(sections: Any) -> str:
+    """Return the SHA-256 of one variant's sections, little-endian, as hex digits."""
+    data = np.ascontiguousarray(sections).astype(sections.dtype.newbyteorder("<"), copy=False)
+    return hashlib.sha256(data.tobytes()).hexdigest()
+
+
+def _table(rows: dict[str, Any]) -> Any:
+    """Return columns as an Arrow table; matrices become lists of fixed length."""
+    import pyarrow as pa
+
+    columns = {}
+    for name, values in rows.items():
+        if isinstance(values, np.ndarray) and values.ndim == 2:
+            flat = pa.array(np.ascontiguousarray(values).reshape(-1))
+            columns[name] = pa.FixedSizeListArray.from_arrays(flat, values.shape[1])
+        else:
+            columns[name] = pa.array(values)
+    return pa.table(columns)
+
+
+def _flush(path: Path) -> None:
+    """See that a file, or all files below a folder, have reached the disk."""
+    for file in [path] if path.is_file() else sorted(p for p in path.rglob("*") if p.is_file()):
+        handle = os.open(file, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

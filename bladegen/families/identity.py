@@ -1,0 +1,90 @@
+"""What a family is, as text: two families with the same identity hold the same blades.
+
+An identity is a flat table of what a run was asked for and of fingerprints of what it was given;
+it stands in `family.json` and is compared before a run goes on.
+"""
+
+import json
+from typing import Any
+
+import numpy as np
+
+from bladegen import __version__
+from bladegen.blade.blade import Blade
+from bladegen.exports.provenance import fingerprint
+from bladegen.families.family import Family
+from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.support.arrays import Array
+from bladegen.variants.designs import Design
+
+__all__ = ["fingerprint", "identity"]
+
+FEW = 64  # variants of a plan of any length that tell whether libraries draw as they did
+
+
+def identity(family: Family) -> dict[str, Any]:
+    """Return what a family is: JSON values only."""
+    blade, design = family.blade, family.design
+    return {
+        "bladegen": __version__,
+        "blade": blade.name,
+        "blade_fingerprint": _blade(blade),
+        "space_fingerprint": None if family.space is None else _space(family.space),
+        "landmarks": len(blade.u),
+        "design": design.kind,
+        "seed": design.seed,
+        "count": len(design),
+        "factors": {
+            name: [float(low), float(high)]
+            for name, low, high in zip(
+                design.what.names, design.what.low, design.what.high, strict=True
+            )
+        },
+        "design_fingerprint": fingerprint(_first(design)),
+        "window": [family.window.start, family.window.end],
+        "chord_line": family.chord_line,
+        "allow_extrapolation": family.allow_extrapolation,
+        "allow_odd": family.allow_odd,
+        "spans": len(family.eta),
+        "invalid": family.invalid,
+        "tries": family.tries,
+        "thinnest": family.thinnest,
+    }
+
+
+def _first(design: Design) -> Array:
+    """Return where variants of a design lie: all of a table, the first ones of what is drawn."""
+    return (
+        design.values if design.table is not None else design.at(np.arange(min(FEW, len(design))))
+    )
+
+
+def _space(space: ShapeSpace) -> str:
+    return fingerprint([space.u, space.mean, space.modes, space.coordinates])
+
+
+def _blade(blade: Blade) -> str:
+    """Fingerprint what a blade is made from: its definition, not what follows from it."""
+    deformations = [
+        [_space(one.space), one.t, one.window, one.chord_line] for one in blade.deformations
+    ]
+    return fingerprint(
+        [
+            blade.definition,
+            blade.u,
+            blade.path,
+            blade.planes,
+            blade.trailing_edge,
+            deformations,
+            blade.thickenings,
+        ]
+    )
+
+
+def differences(wanted: dict[str, Any], found: dict[str, Any]) -> list[str]:
+    """Say in what two identities differ."""
+    return [
+        f"{key}: {json.dumps(found.get(key))} there, {json.dumps(wanted.get(key))} asked for"
+        for key in wanted | found
+        if wanted.get(key) != found.get(key)
+    ]

@@ -1,0 +1,61 @@
+"""The manifest's rows of a block of variants, and what is told of their draws."""
+
+from typing import Any
+
+import numpy as np
+
+from bladegen.airfoils import polygons
+from bladegen.families.family import Block, Family
+from bladegen.families.folder import sections_digest
+from bladegen.measures.spanwise import UNITS
+from bladegen.variants.draws import WIDEST
+
+__all__ = ["drawn_again", "rows_of"]
+
+FEW = 8  # variants measured at once: bounds memory
+
+
+def drawn_again(family: Family, block: Block) -> list[str]:
+    """Say which variants of a block were drawn more than once, and why."""
+    return [
+        f"{family.name(int(block.index[row]))}: {block.attempts[row]} draws, the first refused: "
+        f"{block.refused[row]}"
+        for row in np.flatnonzero(block.attempts > 1)
+    ]
+
+
+def rows_of(family: Family, block: Block) -> dict[str, Any]:
+    """Return the manifest's columns for a block."""
+    batch = block.batch
+    assert batch.measures is not None  # _make asked for them
+    count = len(block.index)
+    few = (batch.sections[i : i + FEW] for i in range(0, count, FEW))  # bounds memory
+    measured = [polygons.volume_and_area(sections.astype(np.float64)) for sections in few]
+    volume, surface = (np.concatenate(parts) for parts in zip(*measured, strict=True))
+    rows: dict[str, Any] = {
+        "index": block.index,
+        "name": [family.name(int(place)) for place in block.index],
+        "valid": block.valid,
+        "reason": list(block.reasons),
+        "attempts": block.attempts,
+        "seed": _seeds(family.design.seed, count),
+    }
+    for name, column in zip(family.design.what.names, block.values.T, strict=True):
+        degrees = name == "twist"
+        rows["twist_deg" if degrees else name] = np.degrees(column) if degrees else column
+    rows |= {
+        "volume_m3": volume,
+        "surface_m2": surface,
+        "sections_sha256": [sections_digest(sections) for sections in batch.sections],
+        "section_chord_m": batch.chord,
+        "section_twist_deg": np.degrees(batch.twist),
+        "section_relative_thickness": batch.relative_thickness,
+    }
+    for name, values in zip(polygons.MEASURES, np.moveaxis(batch.measures, -1, 0), strict=True):
+        rows[f"section_{name}_{UNITS[name]}"] = values
+    return rows
+
+
+def _seeds(seed: int, count: int) -> Any:
+    """Return a seed's column; as text if it has more digits than a column of numbers holds."""
+    return np.full(count, seed, dtype=np.int64) if seed < WIDEST else [str(seed)] * count

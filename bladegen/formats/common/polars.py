@@ -1,0 +1,89 @@
+"""Polars of a document's airfoils; what cannot be read is left out, and said.
+
+A blade's shape does not depend on polars, so nothing that is wrong with them refuses a file.
+"""
+
+import math
+
+import numpy as np
+
+from bladegen.airfoils.polars import Polar
+from bladegen.errors import DefinitionError
+from bladegen.formats.common.document import Node, Notes, Range
+
+__all__ = ["polars"]
+
+TURN = 180.0 + 1e-3
+ANGLE = {"deg": Range(-TURN, TURN, "deg"), "rad": Range(-math.pi - 1e-4, math.pi + 1e-4, "rad")}
+COEFFICIENT = Range(-100.0, 100.0)
+REYNOLDS = Range(0.0, 1e10)
+PARAMETER = Range(-1e6, 1e6)
+GIVEN = ("re", "cl", "cd", "cm")
+
+
+def polars(airfoil: Node) -> tuple[Polar, ...]:
+    """Return the polars of an airfoil entry of windIO 1 or 2."""
+    if not airfoil.has("polars"):
+        return ()
+    notes = Notes()
+    entry = Node(airfoil.value, airfoil.path, notes)
+    found: list[Polar] = []
+    try:
+        for item in entry["polars"].members():
+            configuration = item["configuration"].text() if item.has("configuration") else None
+            source = item["description"].text() if item.has("description") else None
+            marks = configuration or "default", source or ""
+            if item.has("re_sets"):
+                found += [_polar(row, "c{}", "deg", *marks) for row in item["re_sets"].members()]
+            else:
+                found.append(_polar(item, "c_{}", "rad", *marks))
+    except (DefinitionError, _MissingError) as error:
+        notes.problems.append(str(error))
+    if notes.problems:
+        airfoil["polars"].finding(f"left out: {notes.problems[0]}")
+        return ()
+    return tuple(found)
+
+
+class _MissingError(Exception):
+    """A polar without one of its curves; the notes say which."""
+
+
+def _polar(node: Node, key: str, unit: str, configuration: str, source: str) -> Polar:
+    """Read one polar, its curves brought to one grid of angles."""
+    curves = []
+    for letter in "ldm":
+        curve = node[key.format(letter)]
+        grid, values = curve["grid"].numbers(ANGLE[unit]), curve["values"].numbers(COEFFICIENT)
+        if grid is None or values is None:
+            raise _MissingError(node.notes.problems[0])
+        if len(grid) != len(values):
+            raise _MissingError(f"{curve.path}: {len(grid)} angles and {len(values)} values")
+        if not np.all(np.diff(grid) > 0):
+            raise _MissingError(f"{curve.path}: angles must increase strictly")
+        curves.append((grid, values))
+    grid = curves[0][0]
+    for other, _ in curves[1:]:
+        grid = grid if np.array_equal(grid, other) else np.union1d(grid, other)
+    cl, cd, cm = (
+        values if np.array_equal(grid, own) else np.interp(grid, own, values)
+        for own, values in curves
+    )
+    parameters = []
+    if unit == "deg" and isinstance(node.value, dict):
+        parameters = [
+            (name, value)
+            for name in node.value
+            if name not in GIVEN and (value := node[name].number(PARAMETER)) is not None
+        ]
+    alpha = np.radians(grid) if unit == "deg" else grid
+    return Polar(
+        np.clip(alpha, -math.pi, math.pi),
+        cl,
+        cd,
+        cm,
+        reynolds=node["re"].number(REYNOLDS) if node.has("re") else None,
+        configuration=configuration,
+        source=source,
+        parameters=tuple(parameters),
+    )

@@ -1,0 +1,355 @@
+"""Spanwise tables: rows of cells, whatever file they stand in, to named columns in SI units.
+
+A header is a row with at least two known names.  Names are told by many spellings, units by
+brackets or by an ending: ``Chord [m]``, ``chord_m``, ``Twist (deg)``, ``r/R``, or by a row of
+units below the names.  What a header leaves open is taken as usual, and said.  Blank rows within a
+table are of no meaning.
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bladegen.errors import Finding
+from bladegen.formats.common.document import Notes, Range
+from bladegen.formats.common.text_file import number
+from bladegen.support.arrays import Array
+
+__all__ = ["Block", "Cell", "Column", "Rows", "blocks", "values_of"]
+
+Cell = str | float | None
+Rows = list[tuple[int, Sequence[Cell]]]
+
+LENGTHS = {
+    **dict.fromkeys(("m", "meter", "meters", "metre", "metres"), 1.0),
+    **dict.fromkeys(("mm", "millimeter", "millimeters", "millimetre", "millimetres"), 1e-3),
+    **dict.fromkeys(("cm", "centimeter", "centimeters", "centimetre", "centimetres"), 1e-2),
+    **dict.fromkeys(("in", "inch", "inches"), 0.0254),
+    **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
+}
+ANGLES = {
+    **dict.fromkeys(("deg", "degs", "degree", "degrees", "°"), math.pi / 180.0),
+    **dict.fromkeys(("rad", "radian", "radians"), 1.0),
+}
+RATIOS = {
+    **dict.fromkeys(("-", "--", "1", "x/c", "t/c", "r/r", "z/l", "frac", "fraction"), 1.0),
+    **dict.fromkeys(("of chord", "chord", "chords", "c", "/c"), 1.0),
+    **dict.fromkeys(("%", "percent", "per cent", "pct"), 0.01),
+    **dict.fromkeys(("% chord", "%chord", "% of chord", "%c", "% c", "percent chord"), 0.01),
+}
+SHOWN = 5  # wrong cells of one column that are named one by one
+
+
+@dataclass(frozen=True)
+class Field:
+    """A quantity that a table may hold: its spellings, its units, what it may be in SI units."""
+
+    key: str
+    names: tuple[str, ...]
+    units: dict[str, float]
+    usual: str
+    allowed: Range
+
+
+FIELDS = (
+    Field(
+        "eta",
+        (
+            "eta",
+            "r r",
+            "z l",
+            "span fraction",
+            "spanwise position",
+            "normalized span",
+            "normalised span",
+            "blfract",
+            "grid",
+            "span",
+        ),
+        RATIOS,
+        "-",
+        Range(-1e-6, 1.0 + 1e-6, "(root to tip)"),
+    ),
+    Field(
+        "z",
+        ("z", "span", "radius", "r", "blspn", "spanwise position", "distance from root", "rnodes"),
+        LENGTHS,
+        "m",
+        Range(-1000.0, 1000.0, "m"),
+    ),
+    Field("chord", ("chord", "c", "blchord"), LENGTHS, "m", Range(0.0, 100.0, "m", above=True)),
+    Field(
+        "twist",
+        ("twist", "bltwist", "twist angle", "aerodynamic twist", "aerotwst", "theta"),
+        ANGLES,
+        "deg",
+        Range(-math.pi / 2, math.pi / 2, "rad"),
+    ),
+    Field(
+        "rthick",
+        ("rthick", "relative thickness", "t c", "tc", "thickness", "thickness to chord"),
+        RATIOS,
+        "-",
+        Range(0.0, 1.05, "of the chord", above=True),
+    ),
+    Field(
+        "thickness",
+        ("thickness", "absolute thickness"),
+        LENGTHS,
+        "m",
+        Range(0.0, 100.0, "m", above=True),
+    ),
+    Field(
+        "prebend",
+        ("prebend", "pre bend", "precurve", "prebend x", "x"),
+        LENGTHS,
+        "m",
+        Range(-1000.0, 1000.0, "m"),
+    ),
+    Field(
+        "sweep",
+        ("sweep", "presweep", "pre sweep", "sweep y", "y"),
+        LENGTHS,
+        "m",
+        Range(-1000.0, 1000.0, "m"),
+    ),
+    Field(
+        "pitch_axis",
+        ("pitch axis", "pitchaxis", "pitch axis xc", "chord offset", "xoffset"),
+        RATIOS,
+        "-",
+        Range(-1.0, 2.0, "of the chord"),
+    ),
+    Field("offset_y", ("section offset y", "offset y"), LENGTHS, "m", Range(-1000.0, 1000.0, "m")),
+    Field("offset_x", ("section offset x", "offset x"), LENGTHS, "m", Range(-1000.0, 1000.0, "m")),
+)
+TEXT_NAMES = ("airfoil", "airfoil name", "airfoils", "profile", "airfoil id")
+UNITS = {*LENGTHS, *ANGLES, *RATIOS}
+ENDINGS = {*LENGTHS, *ANGLES, "frac", "fraction", "percent", "pct"} - {"in"}  # of a name
+_BRACKETS = re.compile(r"^(.*?)[\[(]\s*([^\])]*?)\s*[\])]\s*$")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table: what it holds, as its header has it, its cells and their rows."""
+
+    key: str
+    title: str
+    factor: float
+    allowed: Range
+    cells: tuple[Cell, ...]
+    rows: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Block:
+    """A table: its columns by what they hold."""
+
+    columns: dict[str, Column]
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """The numbers of its rows in the file."""
+        return next(iter(self.columns.values())).rows
+
+
+def blocks(rows: Rows, notes: Notes) -> list[Block]:
+    """Find the tables in rows of cells; each starts with a header.
+
+    It ends with the next header, or with a blank row behind which its span does not go on.
+    """
+    found: list[Block] = []
+    header: _Header = {}
+    taken: list[tuple[int, Sequence[Cell]]] = []
+    left: list[int] = []
+    units_at, blank = 0, False
+
+    def close() -> None:
+        if header and taken:
+            found.append(_block(header, taken))
+
+    for place, (at, cells) in enumerate(rows):
+        if at == units_at:
+            continue
+        below = next((row for row in rows[place + 1 : place + 4] if not _empty(row[1])), None)
+        known = _header(cells, below, notes, at)
+        if known.columns:
+            close()
+            header, taken, blank = known.columns, [], False
+            units_at = known.units_at
+        elif _empty(cells):
+            blank = True
+        elif header and blank and not _goes_on(header, taken, cells):
+            close()
+            header, taken = {}, []
+            left.append(at)
+        elif header:
+            taken.append((at, cells))
+            blank = False
+        elif found and sum(_number(cell) is not None for cell in cells) > 1:
+            left.append(at)
+    close()
+    if left and found:
+        notes.findings.append(
+            Finding(f"row {left[0]}", f"{len(left)} rows behind a table passed over")
+        )
+    return found
+
+
+def _goes_on(header: "_Header", taken: list[Any], cells: Sequence[Cell]) -> bool:
+    """Tell whether a row behind a blank one is the table's next: its span is farther out."""
+    for k, (key, *_) in header.items():
+        if key in ("eta", "z") and k < len(cells):
+            last = [_number(row[k]) for _, row in taken[-1:] if k < len(row)]
+            here = _number(cells[k])
+            return here is not None and (not last or last[0] is None or here > last[0])
+    return False
+
+
+def _empty(cells: Sequence[Cell]) -> bool:
+    return all(_blank(cell) for cell in cells)
+
+
+def values_of(column: Column, notes: Notes) -> Array | None:
+    """Return a column in SI units, NaN where its cell is empty, or note what is no number."""
+    values = np.full(len(column.cells), np.nan)
+    wrong = []
+    for i, cell in enumerate(column.cells):
+        if _blank(cell):
+            continue
+        value = _number(cell)
+        values[i] = math.nan if value is None else column.factor * value
+        if not column.allowed.holds(values[i]):
+            wrong.append(i)
+    for i in wrong[:SHOWN]:
+        demand = "must be a number," if math.isnan(values[i]) else "allowed is"
+        notes.problems.append(
+            f"row {column.rows[i]}, {column.title}: got {_shown(column.cells[i])}, {demand} "
+            f"{column.allowed}"
+        )
+    if len(wrong) > SHOWN:
+        notes.problems.append(f"{column.title}: {len(wrong) - SHOWN} more cells are wrong")
+    return None if wrong else values
+
+
+_Header = dict[int, tuple[str, str, float, Range]]
+
+
+@dataclass(frozen=True)
+class _Named:
+    """What the columns of a header hold, and the row of its units if they stand below."""
+
+    columns: _Header
+    units_at: int = 0
+
+
+def _block(header: _Header, taken: list[Any]) -> Block:
+    rows = tuple(at for at, _ in taken)
+    columns = {}
+    for k, (key, title, factor, allowed) in header.items():
+        cells = tuple(cells[k] if k < len(cells) else None for _, cells in taken)
+        columns[key] = Column(key, title, factor, allowed, cells, rows)
+    return Block(columns)
+
+
+def _header(
+    cells: Sequence[Cell], below: tuple[int, Sequence[Cell]] | None, notes: Notes, at: int
+) -> _Named:
+    """Return what each column of a header row holds; none if the row is no header."""
+    texts = [cell if isinstance(cell, str) else "" for cell in cells]
+    if sum(_named(title, [], at) is not None for title in texts) < 2 and not _units(below):
+        return _Named({})
+    units = _units(below)
+    titles = [_with_unit(title, units.get(k)) for k, title in enumerate(texts)]
+    known: _Header = {}
+    said: list[Finding] = []
+    for k, title in enumerate(titles):
+        found = _named(title, said, at)
+        if found is None:
+            continue
+        if any(found[0] == other[0] for other in known.values()):
+            said.append(Finding(f"row {at}", f"{title!r} stands twice; the first one is taken"))
+            continue
+        known[k] = found
+    if len(known) < 2:
+        return _Named({})
+    unknown = [title for k, title in enumerate(titles) if title.strip() and k not in known]
+    if unknown:
+        said.append(Finding(f"row {at}", f"columns passed over: {', '.join(unknown[:8])[:200]}"))
+    notes.findings += said
+    return _Named(known, below[0] if units and below else 0)
+
+
+def _units(row: tuple[int, Sequence[Cell]] | None) -> dict[int, str]:
+    """Return the units of a row that holds some and no number; none of any other row."""
+    cells = [] if row is None else row[1]
+    if any(_number(cell) is not None for cell in cells):
+        return {}
+    found = {}
+    for k, cell in enumerate(cells):
+        unit = cell.strip().strip("[]()").strip(" .").lower() if isinstance(cell, str) else ""
+        if unit:
+            found[k] = unit
+    known = sum(unit in UNITS for unit in found.values())
+    return found if 2 * known >= len(found) else {}
+
+
+def _with_unit(title: str, unit: str | None) -> str:
+    """Return a title with the unit that stands below it, if it has none of its own."""
+    if unit is None or not title.strip() or _BRACKETS.match(title):
+        return title
+    return f"{title.strip()} [{unit}]"
+
+
+def _named(title: str, said: list[Finding], at: int) -> tuple[str, str, float, Range] | None:
+    """Tell what a column's title stands for."""
+    match = _BRACKETS.match(title)
+    name, unit = (match[1], match[2].lower()) if match else (title, None)
+    if unit is None and name.rstrip().endswith(("%", "°")):
+        unit = name.rstrip()[-1]
+    words = re.sub(r"[^a-z0-9]+", " ", name.lower()).split()
+    if unit is None and len(words) > 1 and words[-1] in ENDINGS:
+        unit, words = words[-1], words[:-1]
+    if len(words) > 1 and words[-1] == "in":  # chord in mm
+        words = words[:-1]
+    unit = unit if unit is None else unit.rstrip(".")
+    plain = " ".join(words)
+    if plain in TEXT_NAMES:
+        return "airfoil", title.strip(), 1.0, Range(0.0, 0.0)
+    fields = [field for field in FIELDS if plain in field.names]
+    if not fields:
+        return None
+    if unit is not None and unit not in UNITS:
+        said.append(Finding(f"row {at}", f"{title!r}: unit {unit!r} is not known; passed over"))
+        return None
+    for field in fields:
+        if unit is not None and unit in field.units:
+            return field.key, title.strip(), field.units[unit], field.allowed
+    if unit is not None:
+        said.append(Finding(f"row {at}", f"{title!r}: no quantity in {unit!r}; passed over"))
+        return None
+    field = fields[0]
+    if field.usual != "-":
+        said.append(Finding(f"row {at}", f"{title!r} names no unit; taken as {field.usual}"))
+    return field.key, title.strip(), field.units[field.usual], field.allowed
+
+
+def _blank(cell: Cell) -> bool:
+    return cell is None or (isinstance(cell, str) and not cell.strip())
+
+
+def _number(cell: Cell) -> float | None:
+    if cell is None or isinstance(cell, bool):
+        return None
+    if isinstance(cell, int | float):
+        return float(cell)
+    return number(str(cell).strip())
+
+
+def _shown(cell: Cell) -> str:
+    text = repr(cell)
+    return text if len(text) <= 40 else text[:37] + "..."

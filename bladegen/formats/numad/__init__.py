@@ -1,0 +1,4 @@
+"""NuMAD workbooks and project files, as NuMAD and pyNuMAD have them; read only.
+
+In comes a workbook or an .nmd file; out goes a definition.
+"""

@@ -1,0 +1,67 @@
+"""Shape spaces learned from a database of airfoils: the paper's, or any other.
+
+18 CST coefficients an airfoil, and perturbations of up to 20 % of every coefficient; the paper
+takes 1,000 of each of 16 airfoils (`formats.baselines`).
+"""
+
+import numpy as np
+
+from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.shapes import cst
+from bladegen.shapes.affine import standardise
+from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.support.arrays import Array
+
+__all__ = ["build_space"]
+
+
+def build_space(
+    airfoils: dict[str, Array],
+    *,
+    seed: int,
+    count: int = 1000,
+    modes: int = 4,
+    n: int = 401,
+    reach: float = 0.2,
+) -> tuple[ShapeSpace, dict[str, float]]:
+    """Learn a space from perturbations of airfoils' CST coefficients.
+
+    Parameters
+    ----------
+    airfoils : dict
+        Coordinates (m, 2) by name, in any of the forms that `landmarks` takes.
+    seed : int
+        Of the perturbations.
+    count : int
+        Perturbations of each airfoil; 0 takes the airfoils themselves, with no CST.
+    modes : int
+        Modes to keep.
+    n : int
+        Landmarks.
+    reach : float
+        Largest relative change of a coefficient.
+
+    Returns
+    -------
+    ShapeSpace
+    dict
+        The residual of each airfoil's CST fit, RMS [chord].
+    """
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1):  # the same sums in the same order, whatever the machine
+        shapes = np.stack([landmarks(xy, n) for xy in airfoils.values()])
+        if count == 0:
+            about = f"{len(airfoils)} airfoils"
+            return ShapeSpace.fit(standardise(shapes)[0], modes=modes, about=about), {}
+        fits = [cst.fit(shape) for shape in shapes]
+        coefficients = np.stack([coefficients for coefficients, _ in fits])
+        drawn = cst.perturbations(coefficients, count, np.random.default_rng(seed), reach=reach)
+        space = ShapeSpace.fit(
+            cst.standardised_shapes(drawn, n),
+            modes=modes,
+            u=landmark_parameters(n),
+            about=f"{len(airfoils)} airfoils, {count} CST perturbations each of up to {reach:g}, "
+            f"seed {seed}",
+        )
+        return space, {name: residual for name, (_, residual) in zip(airfoils, fits, strict=True)}

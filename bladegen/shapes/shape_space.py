@@ -1,0 +1,388 @@
+"""Principal geodesics: a low-dimensional space of shapes learned from points of Gr(n, 2).
+
+Normal coordinates t of a shape are the components of its logarithm at the Karcher mean along
+the principal modes; a shape of the learned manifold is exp(mean, sum_k t_k modes_k)
+(sections "Principal geodesic deformations" and "Consistent blade deformations" of the paper;
+Fletcher, Lu & Joshi 2003).  Coordinates are radians: |t| is the distance from the mean.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.landmarks import landmark_parameters
+from bladegen.errors import GeometryError, SpaceError
+from bladegen.shapes import grassmann
+from bladegen.shapes.saved_spaces import NO_SPREAD, ORTHONORMAL, problem_of
+from bladegen.support.archive import load_arrays, save_arrays
+from bladegen.support.arguments import instance, numbers, path_of, whole
+from bladegen.support.arrays import Array, readonly
+from bladegen.support.files import require_suffix
+
+__all__ = ["ShapeSpace"]
+
+ARRAYS = ("u", "mean", "modes", "variances", "coordinates")
+CHUNK = 1000  # shapes handled at once: bounds memory to some tens of megabytes
+TOLERANCE = 1e-10  # mean tangent at the Karcher mean [rad]
+STEPS = 100
+SAME_LANDMARKS = 1e-12
+HALVED = 16  # times the error of a cubic spline through half of the landmarks is that of all
+COARSE = 1e-3  # of a shape's root mean square size; splines must be right to this share
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeSpace:
+    """Mean, principal modes and spread of a set of shapes.
+
+    Parameters
+    ----------
+    u : (n,) array
+        Landmark parameters of the shapes.
+    mean : (n, 2) array
+        Karcher mean: an orthonormal basis.
+    modes : (r, n, 2) array
+        Principal tangent vectors at the mean: horizontal, and orthonormal at the landmarks
+        that the space was learned at (see `at`).
+    variances : (q,) array
+        Variance along all principal directions, largest first [rad^2]; q >= r.
+    coordinates : (m, r) array
+        Normal coordinates of the shapes it was learned from.
+    about : str
+        Where the shapes are from.
+    """
+
+    u: Array
+    mean: Array
+    modes: Array
+    variances: Array
+    coordinates: Array = field(repr=False)
+    about: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ARRAYS:
+            values = numbers(getattr(self, name), name, SpaceError)
+            object.__setattr__(self, name, readonly(values))
+
+    def __repr__(self) -> str:
+        return (
+            f"<ShapeSpace of {self.dimension} modes, {len(self.u)} landmarks"
+            f"{self.about and ': '}{self.about}>"
+        )
+
+    @classmethod
+    def fit(
+        cls, points: Array, *, modes: int = 4, u: Array | None = None, about: str = ""
+    ) -> "ShapeSpace":
+        """Learn a space from shapes.
+
+        Parameters
+        ----------
+        points : (m, n, 2) array
+            Orthonormal bases, any representatives.
+        modes : int
+            How many principal modes to keep.
+        u : (n,) array, optional
+            Their landmark parameters; if not given, those of `landmarks.landmark_parameters`,
+            or even ones for a number of landmarks that these do not know.
+        about : str
+            Where the shapes are from.
+
+        Raises
+        ------
+        SpaceError
+            If there are too few shapes, or too few that differ, for the modes.
+        GeometryError
+            If the Karcher mean does not converge.
+        """
+        points = _shapes(points, "points")
+        if points.ndim != 3:
+            raise SpaceError(f"points: got the shape {points.shape}, must be (shapes, n, 2)")
+        count, n, _ = points.shape
+        modes = whole(modes, "modes", SpaceError)
+        largest = min(count - 1, 2 * n - 4)
+        if not 1 <= modes <= largest:
+            raise SpaceError(f"modes: got {modes}, allowed is 1 to {largest} for {count} shapes")
+        mean = _karcher_mean(points)
+        # The covariance acts on tangent vectors as 2n numbers: its Gram matrix is summed up
+        # over chunks of shapes, and no n x n projector is formed.
+        gram = np.zeros((2 * n, 2 * n))
+        for part in _chunks(count):
+            logs = grassmann.log(mean[None], points[part]).reshape(-1, 2 * n)
+            gram += logs.T @ logs
+        from scipy.linalg import eigh
+
+        variances = np.maximum(np.linalg.eigvalsh(gram / count)[::-1], 0.0)
+        if not variances[modes - 1] >= NO_SPREAD**2:
+            spread = int(np.count_nonzero(variances >= NO_SPREAD**2))
+            raise SpaceError(f"modes: got {modes}, the shapes vary in {spread} directions only")
+        _, vectors = eigh(gram, subset_by_index=[2 * n - modes, 2 * n - 1])
+        kept = _horizontal(mean, vectors[:, ::-1].T.reshape(modes, n, 2))
+        space = cls(
+            u=_parameters(n) if u is None else u,
+            mean=mean,
+            modes=kept,
+            variances=variances[:largest],
+            coordinates=np.zeros((0, modes)),
+            about=about,
+        )
+        coordinates = np.concatenate([space.encode(points[part]) for part in _chunks(count)])
+        return cls(space.u, mean, kept, space.variances, coordinates, about)
+
+    @classmethod
+    def bundled(cls) -> "ShapeSpace":
+        """Return the space of the paper's 16-airfoil database: four modes, 401 landmarks."""
+        return cls.load(Path(__file__).resolve().parent / "reference.npz")
+
+    @classmethod
+    def load(cls, path: str | Path) -> "ShapeSpace":
+        """Read a space from an npz file.
+
+        Raises
+        ------
+        SpaceError
+            If the file is no space, is of another version, is damaged, or holds arrays that are
+            no mean, modes and spread.
+        """
+        place = path_of(path, "space", SpaceError)
+        if not place.exists():
+            raise SpaceError(
+                f"{path}: is no file; the bundled space is ShapeSpace.bundled(), in the shell that "
+                "without --space"
+            )
+        arrays, about = load_arrays(place, ARRAYS)
+        problem = problem_of(arrays)
+        if problem is not None:
+            raise SpaceError(f"{path}: is no shape space: {problem}")
+        return cls(**arrays, about=about)
+
+    def save(self, path: str | Path) -> None:
+        """Write the space to an npz file, with a version and a checksum."""
+        where = path_of(path, "path", SpaceError)
+        if self._gram is not None:
+            raise SpaceError(f"{path}: save the space that was learned, not one evaluated from it")
+        require_suffix(where, (".npz",))
+        save_arrays(where, {name: getattr(self, name) for name in ARRAYS}, self.about)
+
+    def at(self, u: Array) -> "ShapeSpace":
+        """Return the same space of shapes with landmarks at other parameters.
+
+        Mean and modes are functions of the landmark parameter, splines through their own
+        landmarks; they are evaluated at `u`.  A coordinate t moves a shape's contour as it does
+        here, whatever the landmarks: where these lie closer or farther apart the modes are no
+        longer orthonormal, and |t| is no distance there.
+
+        Parameters
+        ----------
+        u : (n,) array
+            Landmark parameters, as `landmarks.landmark_parameters` makes them.
+
+        Raises
+        ------
+        SpaceError
+            If the space's own landmarks are too few for it, or `u` too few for its modes.
+        """
+        if len(u) == len(self.u) and np.allclose(u, self.u, rtol=0, atol=SAME_LANDMARKS):
+            return self
+        self._require_fine()
+        matrix = SectionSplines(self.u).values(np.asarray(u))
+        mean = matrix @ self.mean
+        mean -= mean.mean(axis=0)
+        squares, axes = np.linalg.eigh(mean.T @ mean)
+        if len(u) < self.dimension + 3 or squares[0] < ORTHONORMAL * squares[1]:
+            raise SpaceError(f"{len(u)} landmarks are too few for {self.dimension} modes")
+        scale = (axes / np.sqrt(squares)) @ axes.T
+        modes = matrix @ self.modes @ scale
+        modes -= modes.mean(axis=-2, keepdims=True)
+        mean = mean @ scale
+        return replace(self, u=u, mean=mean, modes=modes - mean @ (mean.T @ modes))
+
+    def _require_fine(self) -> None:
+        """Raise if the space's landmarks are too few to say what lies between them."""
+        columns = np.concatenate([self.mean[None], self.modes])
+        halves = SectionSplines(self.u[::2]).values(self.u) if len(self.u) >= 9 else None
+        missed = np.inf if halves is None else np.abs(halves @ columns[:, ::2] - columns).max()
+        error = float(missed) * np.sqrt(len(self.u)) / HALVED
+        if not error <= COARSE:
+            raise SpaceError(
+                f"space: its {len(self.u)} landmarks are too coarse to be evaluated at others "
+                f"(an error of {error:.1g}, allowed is {COARSE:g} of a shape's size); build the "
+                f"blade with landmarks={len(self.u)} (--landmarks {len(self.u)})"
+            )
+
+    @cached_property
+    def _gram(self) -> Array | None:
+        """The inner products of the modes; None where these are orthonormal."""
+        flat = self.modes.reshape(self.dimension, -1)
+        gram: Array = flat @ flat.T
+        return None if np.abs(gram - np.eye(len(gram))).max() < ORTHONORMAL else gram
+
+    @property
+    def dimension(self) -> int:
+        """The number of modes, r."""
+        return len(self.modes)
+
+    @property
+    def variance_ratio(self) -> Array:
+        """Each direction's share of the whole variance, (q,)."""
+        ratio: Array = self.variances / self.variances.sum()
+        return ratio
+
+    @property
+    def lower(self) -> Array:
+        """The least coordinate of the shapes along each mode, (r,)."""
+        lower: Array = self.coordinates.min(axis=0)
+        return lower
+
+    @property
+    def upper(self) -> Array:
+        """The largest coordinate of the shapes along each mode, (r,)."""
+        upper: Array = self.coordinates.max(axis=0)
+        return upper
+
+    @property
+    def extent(self) -> float:
+        """Standard deviations to the farthest shape: the smallest centred ellipsoid's size."""
+        spread = np.sqrt(self.variances[: self.dimension])
+        return float(np.max(np.linalg.norm(self.coordinates / spread, axis=1)))
+
+    def encode(self, points: Array) -> Array:
+        """Return normal coordinates (..., r) of shapes (..., n, 2), any representatives."""
+        # The logarithm is Y G - X H, and modes are horizontal: <Y G - X H, U> = <G, Y^T U>.
+        points = _shapes(points, "points", len(self.mean))
+        G, _ = grassmann.log_factors(self.mean.T @ points)
+        across = np.moveaxis(self.modes, 0, 1).reshape(len(self.mean), -1)
+        inner = (points.mT @ across).reshape(*G.shape[:-1], self.dimension, 2)
+        t: Array = np.einsum("...arb,...ab->...r", inner, G)
+        if self._gram is not None:
+            t = t @ np.linalg.inv(self._gram)
+        return t
+
+    def tangent(self, t: Array) -> Array:
+        """Return the tangent vectors (..., n, 2) at the mean with coordinates t (..., r)."""
+        V: Array = np.tensordot(self._checked(t), self.modes, axes=1)
+        return V
+
+    def decode(self, t: Array) -> Array:
+        """Return the shapes (..., n, 2) of the learned manifold at coordinates t (..., r).
+
+        Raises
+        ------
+        SpaceError
+            If t has not one number a mode.
+        """
+        return grassmann.exp(self.mean, self.tangent(t))
+
+    def carried(self, t: Array, points: Array) -> Array:
+        """Carry tangents at the mean to shapes, by parallel transport.
+
+        Parameters
+        ----------
+        t : (k, r) array
+            Coordinates of the tangents.
+        points : (k, n, 2) array
+            Where to.
+
+        Returns
+        -------
+        (k, n, 2) array
+            Tangent vectors at the bases `points`, inner products kept.
+        """
+        return grassmann.transport(self.tangent(t), self.mean[None], points)
+
+    def sample(self, count: int, rng: np.random.Generator) -> Array:
+        """Draw coordinates (count, r), uniform in the smallest centred ellipsoid of the data.
+
+        Its axes lie along the modes, in the ratio of the standard deviations.
+        """
+        count = whole(count, "count", SpaceError)
+        if count < 0:
+            raise SpaceError(f"count: got {count}, must not be negative")
+        must = "a numpy.random.Generator, such as numpy.random.default_rng(7)"
+        instance(rng, np.random.Generator, "rng", must, SpaceError)
+        spread = np.sqrt(self.variances[: self.dimension])
+        direction = rng.normal(size=(count, self.dimension))
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        radius = rng.uniform(size=(count, 1)) ** (1.0 / self.dimension)
+        drawn: Array = self.extent * radius * direction * spread
+        return drawn
+
+    def outside(self, t: Array) -> str | None:
+        """Say which of the coordinates t (..., r) leaves the data's range, or None."""
+        t = self._checked(t).reshape(-1, self.dimension)
+        low, high = t.min(axis=0), t.max(axis=0)
+        for k in range(self.dimension):
+            for value in (low[k], high[k]):
+                if not self.lower[k] <= value <= self.upper[k]:
+                    return (
+                        f"t{k + 1} = {value:g}, allowed is {self.lower[k]:.4g} to "
+                        f"{self.upper[k]:.4g}"
+                    )
+        return None
+
+    def _checked(self, t: Array) -> Array:
+        t = numbers(t, "t", SpaceError)
+        if t.ndim == 0 or t.shape[-1] != self.dimension:
+            given = t.shape[-1] if t.ndim else 1
+            raise SpaceError(f"t: got {given} coordinates, the space has {self.dimension} modes")
+        if not np.isfinite(t).all():
+            raise SpaceError("t: coordinates must be finite")
+        return t
+
+
+def _shapes(points: Array, field: str, n: int | None = None) -> Array:
+    """Return shapes (..., n, 2) as an array, or say that they are none."""
+    values = numbers(points, field, SpaceError, "points of Gr(n, 2), (..., n, 2)")
+    if values.ndim < 2 or values.shape[-1] != 2 or (n is not None and values.shape[-2] != n):
+        wanted = f"(..., {'n' if n is None else n}, 2)"
+        raise SpaceError(f"{field}: got the shape {values.shape}, must be {wanted}")
+    return values
+
+
+def _chunks(count: int) -> Iterator[slice]:
+    return (slice(first, first + CHUNK) for first in range(0, count, CHUNK))
+
+
+def _karcher_mean(points: Array) -> Array:
+    """Return the Karcher mean of many points, by gradient steps.
+
+    The sum of the logarithms Y G - X H is (sum of Y G) - X (sum of H) with 2 x 2 matrices G and
+    H, so a step is two products with the matrix of all landmarks and never forms a logarithm.
+    """
+    count, n, _ = points.shape
+    landmarks = np.ascontiguousarray(np.moveaxis(points, 0, 1)).reshape(n, 2 * count)
+    mean, length = points[0], np.inf
+    for _ in range(STEPS):
+        overlaps = np.moveaxis((mean.T @ landmarks).reshape(2, count, 2), 0, 1)
+        G, H = grassmann.log_factors(overlaps)
+        tangent = (landmarks @ G.reshape(2 * count, 2) - mean @ H.sum(axis=0)) / count
+        length = float(grassmann.norm(tangent))
+        if length <= TOLERANCE:
+            return grassmann.align(points[0], mean)
+        mean = np.linalg.qr(grassmann.exp(mean, tangent)).Q
+    raise GeometryError(
+        f"Karcher mean of {count} shapes: not converged after {STEPS} steps: the mean tangent is "
+        f"{length:.1e} rad, allowed is {TOLERANCE:.1e}"
+    )
+
+
+def _parameters(n: int) -> Array:
+    """Return landmark parameters of n points that may be no airfoil's."""
+    return landmark_parameters(n) if n % 2 and n >= 5 else np.linspace(0.0, 1.0, n)
+
+
+def _horizontal(mean: Array, modes: Array) -> Array:
+    """Make modes horizontal at the mean and orthonormal, to rounding; fix their signs.
+
+    A mode's sign is free; its largest entry is made positive, so that fits can be compared.
+    """
+    horizontal = modes - mean @ (mean.T @ modes)
+    flat = horizontal.reshape(len(modes), -1)
+    Q, R = np.linalg.qr(flat.T)
+    flat = (Q * np.sign(np.diag(R))).T
+    largest = flat[np.arange(len(flat)), np.argmax(np.abs(flat), axis=1)]
+    signed: Array = (flat * np.sign(largest)[:, None]).reshape(modes.shape)
+    return signed

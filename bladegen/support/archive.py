@@ -1,0 +1,88 @@
+"""Arrays on disk: npz files with a format version and a checksum.
+
+Nothing in such a file is executed: plain arrays and text only.
+"""
+
+import hashlib
+import io
+import struct
+import tokenize
+import zipfile
+import zlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.errors import FileError, SpaceError
+from bladegen.support.arrays import Array
+from bladegen.support.files import content_of, replacing
+
+__all__ = ["checksum", "load_arrays", "save_arrays"]
+
+VERSION = 1
+MAX_BYTES = 200 * 2**20  # of the file, and of what it unpacks to
+LABELS = ("version", "about", "checksum")
+DAMAGED = (  # what zipfile, zlib and numpy raise at bytes that are no archive of arrays
+    ValueError,
+    LookupError,
+    EOFError,
+    NotImplementedError,  # a way of packing that zipfile does not know
+    RuntimeError,  # a member under a password
+    MemoryError,  # a header that claims more than there is
+    OverflowError,
+    OSError,  # a directory that points before its file
+    struct.error,
+    tokenize.TokenError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+
+
+def save_arrays(path: Path, arrays: dict[str, Array], about: str) -> None:
+    """Write arrays to a file; an existing one is replaced once the new one is whole."""
+    labels = {"version": VERSION, "about": about, "checksum": checksum(arrays, about)}
+    payload: dict[str, Any] = {name: np.array(value) for name, value in labels.items()}
+    with replacing(path) as temporary, temporary.open("wb") as stream:
+        np.savez_compressed(stream, **(payload | arrays))
+
+
+def load_arrays(path: Path, names: Sequence[str]) -> tuple[dict[str, Array], str]:
+    """Read the named arrays and the text that goes with them.
+
+    Raises
+    ------
+    SpaceError
+        If the file cannot be read, is of another version, or is damaged.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content_of(path, MAX_BYTES))) as archive:
+            if sum(member.file_size for member in archive.infolist()) > MAX_BYTES:
+                raise SpaceError(f"{path}: unpacks to more than {MAX_BYTES >> 20} MB")
+            held = {name: _member(archive, name) for name in (*LABELS, *names)}
+    except FileError as error:
+        raise SpaceError(str(error)) from None
+    except DAMAGED as error:
+        raise SpaceError(f"{path}: is no shape space: {error}") from None
+    if held["version"].shape != () or held["version"] != VERSION:
+        raise SpaceError(f"{path}: has version {held['version']}, allowed is {VERSION}")
+    arrays = {name: held[name] for name in names}
+    about = str(held["about"])
+    if str(held["checksum"]) != checksum(arrays, about):
+        raise SpaceError(f"{path}: is damaged: its checksum does not match its arrays")
+    return arrays, about
+
+
+def _member(archive: zipfile.ZipFile, name: str) -> Any:
+    with archive.open(f"{name}.npy") as stream:
+        return np.lib.format.read_array(stream, allow_pickle=False)
+
+
+def checksum(arrays: dict[str, Array], about: str) -> str:
+    """Return the digest that vouches for arrays and the text that goes with them."""
+    digest = hashlib.sha256(about.encode())
+    for name, array in arrays.items():
+        digest.update(f"{name} {array.shape} {array.dtype.str}".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,142 @@
+"""Structured quadrilaterals over a blade's tip, in two blocks without a singular point.
+
+A rim goes along the last section's outline, from trailing edge around the nose to trailing edge;
+a core fills what it encloses, from the suction to the pressure side and from the trailing edge
+to the nose.  Points are named by e = |u - 1/2|, the distance from the nose, and w, 0 to 1, the
+place between suction and pressure side.  Lines of constant w meet in the nose, so the core ends
+ahead of it and the rim goes around: on a flat tip along straight lines of its plane; on a round
+one along straight lines of the half plane e exp(i pi w), where the nose is a regular point of
+the outline w = 0, 1.  Metres, blade frame.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladegen.blade.blade import Blade
+from bladegen.support.arrays import Array
+from bladegen.surface.tips import Tip, arcs, on_arcs
+
+__all__ = ["Cap", "cap", "divisions"]
+
+DEPTH = 0.3  # a flat core ends where the nose is so deep for its half width: 45 degrees turned
+CLOSEST = 1.6  # but no nearer than so many times the distance at which the rim leaves the sides
+NARROWED = 0.9  # there the core is as wide as the rim, nearly
+ROUND_CLOSEST = 1.4  # the same on a round tip, where the core need not narrow
+FARTHEST = 0.25  # e, half way to the trailing edge
+
+
+@dataclass(frozen=True, eq=False)
+class Cap:
+    """Points [m] over a tip and their landmark parameters, those of the nearer side.
+
+    `rim` is (layers + 1, n, 3), from the outline inward and around; `core` is
+    (across + 1, corner + 1, 3), from suction to pressure side and from the trailing edge to the
+    nose.  `rim_u` and `core_u` are (layers + 1, n) and (across + 1, corner + 1).
+    """
+
+    rim: Array
+    core: Array
+    rim_u: Array
+    core_u: Array
+
+
+def divisions(edge: int) -> tuple[int, int]:
+    """Return how many of the cells across the edge belong to either rim, and to the core."""
+    layers = edge // 4
+    return layers, edge - 2 * layers
+
+
+def cap(blade: Blade, tip: Tip, outline: Array, u: Array, edge: int) -> Cap:
+    """Cover a blade's tip.
+
+    Parameters
+    ----------
+    blade : Blade
+        Whose tip it is.
+    tip : callable
+        `tips.flat_tip` or `tips.round_tip`.
+    outline : (n, 3) array
+        Its last section [m], which the rim starts from.
+    u : (n,) array
+        The landmark parameters of its points.
+    edge : int
+        Cells across the trailing edge, even, at least 4.
+    """
+    layers, across = divisions(edge)
+    share = layers / edge
+    n, middle = len(u), len(u) // 2
+    corner = middle - across // 2  # the core's nose faces so many cells of the outline
+    flat = arcs(blade, tip) is None
+
+    e = np.abs(u - 0.5)
+    nose = min(_core_ends(outline, e, corner) if flat else ROUND_CLOSEST * e[corner], FARTHEST)
+    within = nose + (e - e[corner]) * (0.5 - nose) / (0.5 - e[corner])
+    within[corner : n - corner] = nose
+    within[[0, -1]] = 0.5
+    width = np.full(n, 1.0 - 2.0 * share)
+    if flat:
+        narrow = min(NARROWED * e[corner] / (nose * width[0]), 1.0)
+        width *= 1.0 - (1.0 - narrow) * (nose / within - 2.0 * nose) / (1.0 - 2.0 * nose)
+    place = np.clip((np.arange(n) - corner) / across, 0.0, 1.0)
+    w, opposite = np.where(np.arange(n) > middle, 1.0, 0.0), _across(width, place)
+    t = np.linspace(0.0, 1.0, layers + 1)[:, None]
+    rim_e, rim_w = (1.0 - t) * e + t * within, (1.0 - t) * w + t * opposite
+    if not flat:
+        round_nose = slice(corner + 1, n - 1 - corner)
+        start, stop = (a * np.exp(1j * np.pi * b) for a, b in ((e, w), (within, opposite)))
+        line = ((1.0 - t) * start + t * stop)[1:, round_nose]
+        rim_e[1:, round_nose], rim_w[1:, round_nose] = np.abs(line), np.angle(line) / np.pi
+
+    core_w = _across(width[: corner + 1], place[corner : n - corner, None])
+    core_e = np.broadcast_to(within[: corner + 1], core_w.shape)
+    rim, core = _points(blade, tip, (rim_e, core_e), (rim_w, core_w))
+    if flat:
+        rim = outline + t[..., None] * (rim[-1] - outline)
+    rim[0] = outline
+    core[0], core[-1] = rim[-1, : corner + 1], rim[-1, : n - corner - 2 : -1]
+    core[:, -1] = rim[-1, corner : n - corner]
+    if np.array_equal(outline[0], outline[-1]):
+        rim[:, [0, -1]] = core[:, :1] = outline[0]  # a sharp edge is one point, bit for bit
+    return Cap(rim, core, _landmark(rim_e, rim_w), _landmark(core_e, core_w))
+
+
+def _core_ends(outline: Array, e: Array, corner: int) -> float:
+    """Return the distance e from the nose at which a flat tip's core ends."""
+    middle = len(outline) // 2
+    suction, pressure = outline[: middle + 1], outline[: middle - 1 : -1]
+    depth = np.linalg.norm(0.5 * (suction + pressure) - outline[middle], axis=-1)
+    half = 0.5 * np.linalg.norm(suction - pressure, axis=-1)
+    first = int(np.argmax(depth <= DEPTH * half))  # from the trailing edge on
+    return float(max(e[first], CLOSEST * e[corner]))
+
+
+def _across(width: Array, place: Array) -> Array:
+    """Return w of places 0 to 1 across a core that takes a share `width` of the way."""
+    w: Array = 0.5 - width * (0.5 - place)
+    return w
+
+
+def _landmark(e: Array, w: Array) -> Array:
+    return np.where(w <= 0.5, 0.5 - e, 0.5 + e)
+
+
+def _points(
+    blade: Blade, tip: Tip, distances: tuple[Array, ...], across: tuple[Array, ...]
+) -> list[Array]:
+    """Return points (..., 3) of the tip's surface at e and w, for several grids of them."""
+    flat = np.concatenate([[0.0, 0.5], *(e.reshape(-1) for e in distances)])
+    e, index = np.unique(flat, return_inverse=True)
+    index = len(e) - 1 - index[2:]
+    side = 0.5 - e[::-1]
+    u = np.concatenate([side, 1.0 - side[-2::-1]])
+    w = np.concatenate([part.reshape(-1) for part in across])
+    poles = arcs(blade, tip, u)
+    if poles is None:
+        section = blade.sections(1.0, u)
+        points = (1.0 - w)[:, None] * section[index] + w[:, None] * section[-1 - index]
+    else:
+        points = on_arcs(poles[index], w)
+    cuts = np.cumsum([part.size for part in across])[:-1]
+    grids = zip(np.split(points, cuts), across, strict=True)
+    return [part.reshape(*shape.shape, 3) for part, shape in grids]

@@ -1,0 +1,302 @@
+"""Closed triangle meshes from a structured grid of sections.
+
+A grid of sections (k, n, 3) becomes quads split along their shorter diagonal, a strip that
+closes a blunt trailing edge, and caps zipped between opposite landmarks at root and tip; arcs
+across the tip round it.  The mesh is watertight and its triangles face outward.  Lengths are
+those of the sections, metres.
+"""
+
+import hashlib
+import io
+import re
+import uuid
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.blade.blade import Blade
+from bladegen.errors import FileError, GeometryError
+from bladegen.support.arrays import Array, Indices, readonly
+from bladegen.surface.tips import Tip, arcs, flat_tip, on_arcs
+
+__all__ = [
+    "TriangleMesh",
+    "assembled",
+    "from_blade",
+    "read",
+    "sound",
+    "surface",
+    "to_trimesh",
+    "with_steady_ids",
+]
+
+ACROSS = 16  # quads across a rounded tip
+SECTIONS = 300  # 300 x 401 landmarks make 240,000 triangles
+FARTHEST = 1e9  # of a vertex of a file, in its unit: products of three lengths stay finite
+SAME_POINT = 1e-9  # m; landmarks nearer than this are one vertex
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Triangles that share vertices.
+
+    Parameters
+    ----------
+    vertices : (v, 3) array
+        Points [m].
+    faces : (f, 3) array of int
+        Vertices of each triangle, counter-clockwise seen from outside.
+    places : (v, 2) array, optional
+        Span fraction eta and landmark parameter u of each vertex, of one where several coincide.
+    """
+
+    vertices: Array
+    faces: Indices
+    places: Array | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", readonly(self.vertices))
+        if self.places is not None:
+            object.__setattr__(self, "places", readonly(self.places))
+        faces = np.array(self.faces, dtype=np.int64)
+        faces.flags.writeable = False
+        object.__setattr__(self, "faces", faces)
+
+    @property
+    def area(self) -> float:
+        """Surface area [m2]."""
+        return float(0.5 * np.linalg.norm(self._normals, axis=1).sum())
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume [m3], by the divergence theorem; positive if faces look outward."""
+        first = self.vertices[self.faces[:, 0]] - self.vertices[0]
+        return float(np.sum(first * self._normals) / 6.0)
+
+    @property
+    def _normals(self) -> Array:
+        a, b, c = (self.vertices[self.faces[:, i]] for i in range(3))
+        return np.cross(b - a, c - a)
+
+
+def from_blade(blade: Blade, *, stations: int = SECTIONS, tip: Tip = flat_tip) -> TriangleMesh:
+    """Mesh a blade by `stations` sections where it bends, ended by `tip`."""
+    eta, poles = blade.stations(stations), arcs(blade, tip)
+    places = np.stack(np.meshgrid(eta, blade.u, indexing="ij"), axis=-1).reshape(-1, 2)
+    across = None
+    if poles is not None:
+        w = np.linspace(0.0, 1.0, ACROSS + 1)
+        across = on_arcs(poles[:, None], w[None])
+        side = blade.u[: len(poles), None]
+        nearer = np.where(w <= 0.5, side, 1.0 - side).reshape(-1)
+        places = np.concatenate([places, np.stack([np.ones_like(nearer), nearer], axis=-1)])
+    return surface(blade.sections(eta), across, places)
+
+
+def surface(
+    sections: Array, across: Array | None = None, places: Array | None = None
+) -> TriangleMesh:
+    """Mesh a grid of sections.
+
+    Parameters
+    ----------
+    sections : (k, n, 3) array
+        From root to tip, each from trailing edge over suction side, leading edge and pressure
+        side to trailing edge, n odd.  First and last landmark may differ (blunt) or agree
+        (sharp), at each section for itself.
+    across : (n // 2 + 1, q, 3) array, optional
+        Rows over the tip from suction to pressure side, q odd, from the trailing edge to the
+        leading edge, where they are one point.  Without them the tip is flat.
+    places : (m, 2) array, optional
+        Of all these points, for `TriangleMesh.places`.
+
+    Raises
+    ------
+    GeometryError
+        If there are fewer than 2 sections or an even number of landmarks.
+    """
+    k, n, _ = sections.shape
+    if k < 2 or n < 5 or n % 2 == 0:
+        raise GeometryError(
+            f"mesh: got {k} sections of {n} landmarks, allowed are at least 2 sections of an "
+            "odd number of at least 5 landmarks"
+        )
+    points = sections.reshape(-1, 3)
+    grid = np.arange(k * n).reshape(k, n)
+    around = np.concatenate([grid, grid[:, :1]], axis=1)  # the last column closes the edge
+    suction, pressure = grid[-1, : n // 2 + 1], grid[-1, : n // 2 - 1 : -1]
+    if across is None:
+        rows = np.stack([suction, pressure], axis=1)
+    else:
+        rows = np.arange(across.shape[0] * across.shape[1]).reshape(across.shape[:2]) + k * n
+        rows[:, 0], rows[:, -1] = suction, pressure
+        points = np.concatenate([points, across.reshape(-1, 3)])
+    faces = np.concatenate(
+        [
+            _quads(points, around[:-1, :-1], around[1:, :-1], around[1:, 1:], around[:-1, 1:]),
+            _cap(points, grid[0]),
+            _quads(points, rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]),
+            *(() if across is None else (_cap(points, rows[0])[:, ::-1],)),
+        ]
+    )
+    used, faces = _welded(points, faces, grid, rows)
+    return TriangleMesh(points[used], faces, None if places is None else places[used])
+
+
+def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
+    """Return the mesh as a trimesh.Trimesh, its lengths times `scale`."""
+    import trimesh
+
+    return trimesh.Trimesh(
+        vertices=mesh.vertices * scale, faces=mesh.faces, process=False, validate=False
+    )
+
+
+def assembled(parts: Sequence[tuple[str, TriangleMesh, Array, Array]]) -> bytes:
+    """Return named meshes, each turned (3, 3) and shifted (3,) [m], as one GLB file's bytes.
+
+    Points are ``p @ rotation.T + shift``; a mesh that stands in several places is stored once.
+    """
+    import trimesh
+
+    scene = trimesh.Scene()
+    known: dict[int, str] = {}
+    for name, mesh, rotation, shift in parts:
+        move = np.eye(4)
+        move[:3, :3], move[:3, 3] = rotation, shift
+        if id(mesh) in known:
+            scene.graph.update(name, matrix=move, geometry=known[id(mesh)])
+        else:
+            scene.add_geometry(to_trimesh(mesh), node_name=name, geom_name=name, transform=move)
+            known[id(mesh)] = name
+    data: bytes = scene.export(file_type="glb")
+    return data
+
+
+def with_steady_ids(package: bytes) -> bytes:
+    """Return a 3MF file with identifiers that follow from its content, instead of random ones."""
+    with zipfile.ZipFile(io.BytesIO(package)) as archive:
+        members = [(info, archive.read(info)) for info in archive.infolist()]
+    plain = b"".join(_UUID.sub(b"", content) for _, content in members)
+    seed = hashlib.sha256(plain).hexdigest()
+    known: dict[bytes, bytes] = {}
+
+    def steady(found: re.Match[bytes]) -> bytes:
+        name = f"{seed}/{len(known)}"
+        known.setdefault(found[0], str(uuid.uuid5(uuid.NAMESPACE_OID, name)).encode())
+        return known[found[0]]
+
+    result = io.BytesIO()
+    with zipfile.ZipFile(result, "w") as archive:
+        for info, content in members:
+            archive.writestr(info, _UUID.sub(steady, content))
+    return result.getvalue()
+
+
+_UUID = re.compile(rb"(?<=UUID=\")[0-9a-fA-F-]{36}(?=\")")
+
+
+def read(path: Path) -> Any:
+    """Read a mesh file of any format that trimesh knows, as one trimesh.Trimesh.
+
+    Files that it names beside itself (materials, pictures) are not opened.
+
+    Raises
+    ------
+    FileError
+        If trimesh cannot make sound triangles of it.
+    """
+    import trimesh
+
+    try:
+        kind = path.suffix.lower().lstrip(".")
+        # a stream with a name leads trimesh to what lies beside
+        content = io.BytesIO(path.read_bytes())
+        loaded = trimesh.load_mesh(content, file_type=kind, resolver=None)
+        vertices, faces = loaded.vertices, loaded.faces
+    except Exception as error:  # trimesh's loaders raise whatever their parsers do
+        text = f"{type(error).__name__} {error}"
+        raise FileError(str(path), [f"is no mesh that can be read: {text}"]) from None
+    return sound(path, vertices, faces, loaded)
+
+
+def sound(path: Path, vertices: Array, faces: Indices, made: Any = None) -> Any:
+    """Return triangles of a file as a trimesh.Trimesh, `made` if there is one already.
+
+    Raises
+    ------
+    FileError
+        If there are none, one leads to a vertex that is not there, or a coordinate is no number.
+    """
+    if not len(faces):
+        raise FileError(str(path), ["holds no triangles"])
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        bad = int(faces.min() if faces.min() < 0 else faces.max())
+        raise FileError(
+            str(path), [f"a triangle names vertex {bad}, allowed are 0 to {len(vertices) - 1}"]
+        )
+    used = np.asarray(vertices)[np.unique(faces)]
+    if not np.isfinite(used).all() or np.abs(used).max() > FARTHEST:
+        raise FileError(
+            str(path), [f"has vertices that are no numbers, or farther away than {FARTHEST:g}"]
+        )
+    return to_trimesh(TriangleMesh(vertices, faces)) if made is None else made
+
+
+def _quads(points: Array, a: Indices, b: Indices, c: Indices, d: Indices) -> Indices:
+    """Split quads a-b-c-d along their shorter diagonal."""
+    a, b, c, d = (corner.reshape(-1) for corner in (a, b, c, d))
+    ac = np.sum((points[a] - points[c]) ** 2, axis=1)
+    bd = np.sum((points[b] - points[d]) ** 2, axis=1)
+    by_ac = (ac <= bd)[:, None]
+    first = np.where(by_ac, np.stack([a, b, c], axis=1), np.stack([a, b, d], axis=1))
+    second = np.where(by_ac, np.stack([a, c, d], axis=1), np.stack([b, c, d], axis=1))
+    return np.concatenate([first, second])
+
+
+def _cap(points: Array, row: Indices) -> Indices:
+    """Zip opposite landmarks of one section; the triangles look to the root."""
+    middle = len(row) // 2
+    suction, pressure = row[: middle + 1], row[: middle - 1 : -1]
+    return _quads(points, pressure[:-1], suction[:-1], suction[1:], pressure[1:])
+
+
+def _welded(points: Array, faces: Indices, grid: Indices, rows: Indices) -> tuple[Indices, Indices]:
+    """Join neighbours that coincide, drop collapsed triangles; return used points and faces."""
+    faces = _merged(points, grid, rows)[faces]
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    used, faces = np.unique(faces, return_inverse=True)
+    return used, faces.reshape(-1, 3)
+
+
+def _merged(points: Array, grid: Indices, rows: Indices) -> Indices:
+    """Return the vertex that stands for each point: the first of those that coincide.
+
+    Sides are joined across the blade at its trailing edge and at its end sections only;
+    elsewhere the edges between two such places would belong to four triangles.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    half = grid.shape[1] // 2
+    neighbours = (
+        (grid[:, 1:], grid[:, :-1]),
+        (grid[1:], grid[:-1]),
+        (grid[:, 0], grid[:, -1]),
+        (grid[0, :half], grid[0, :half:-1]),
+        (rows[:, 1:], rows[:, :-1]),
+        (rows[1:], rows[:-1]),
+    )
+    a, b = (np.concatenate([pair[i].reshape(-1) for pair in neighbours]) for i in range(2))
+    same = np.linalg.norm(points[a] - points[b], axis=1) <= SAME_POINT
+    joined = coo_array(
+        (np.ones(np.count_nonzero(same)), (a[same], b[same])), shape=(len(points), len(points))
+    )
+    _, group = connected_components(joined, directed=False)
+    _, first = np.unique(group, return_index=True)
+    return np.asarray(first[group], dtype=np.int64)

@@ -1,0 +1,380 @@
+"""Many perturbations of one blade at once: sections at fixed spans, measured and tested.
+
+What does not change from variant to variant is prepared once: the shapes at the spans, the
+modes carried there by parallel transport, and the splines of both.  A variant's section is
+then linear in these features, F a span, with coefficients from its 2 x 2 matrices,
+
+    (X cos S + D sin S / S) M A + ...,   D = w sum_j t_j V_j,   S^2 = D^T D,
+
+and a compiled loop (`kernels`) takes it from there.  The result is what `Blade.perturbed` gives,
+to rounding.  Arrays are (k, b, ...), spans first, until sections come out as (b, k, ...).
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from bladegen.airfoils import polygons
+from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions, angles
+from bladegen.airfoils.crossing import crossing_sections
+from bladegen.airfoils.curves import SectionCurves
+from bladegen.blade.blade import Blade
+from bladegen.blade.deformation import AffineChange, Window, faded
+from bladegen.blade.edges import AsGiven, MinimumThickness, TrailingEdge
+from bladegen.blade.planform import placement
+from bladegen.blade.sanity import CHARACTERISTICS, Oddities, characteristics, oddities
+from bladegen.shapes import affine, grassmann
+from bladegen.shapes.domain import Domain
+from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.support.arrays import Array, ArrayLike, Indices, readonly
+from bladegen.variants.members import CROSSING, FAULTS, SOUND, THIN, TURNED, Batch
+
+__all__ = ["FAULTS", "LOST_THICKNESS", "Batch", "SectionBatch"]
+
+
+LOST_THICKNESS = 0.2  # of the thickness before, which a deformation must leave
+TURNED_EDGE = -1e-6  # chord; an edge that is open the wrong way by more has turned over
+
+
+@dataclass(frozen=True, eq=False)
+class SectionBatch:
+    """A blade's sections at fixed spans, ready to be perturbed many times.
+
+    Parameters
+    ----------
+    blade : Blade
+        The baseline.
+    space : ShapeSpace, optional
+        Modes of deformation; without it only affine changes are made.
+    window : Window
+        Where along the span they act.
+    eta : (k,) array
+        Span fractions of the sections.
+    chord_line : str
+        What a change of shape does with the chord line, as for `Blade.perturbed`.
+    """
+
+    blade: Blade
+    space: ShapeSpace | None
+    window: Window
+    eta: Array
+    chord_line: str = KEPT
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "eta", readonly(self.eta))
+
+    def within(self, window: Window) -> "SectionBatch":
+        """Return the same sections under another window; what it does not touch is shared."""
+        other = replace(self, window=window)
+        own = {*vars(other), "_weight"}
+        vars(other).update({name: value for name, value in vars(self).items() if name not in own})
+        return other
+
+    @cached_property
+    def _weight(self) -> Array:
+        return self.window(self.eta)
+
+    @cached_property
+    def _shapes(self) -> tuple[Array, Array, Array, Array]:
+        return self.blade.shapes(self.eta)
+
+    @property
+    def modes(self) -> int:
+        """The number of shape coordinates."""
+        return self.space.dimension if self.space is not None else 0
+
+    @cached_property
+    def _carried(self) -> Array:
+        """The modes at the spans' shapes, (k, r, n, 2)."""
+        X = self._shapes[1]
+        if self.space is None:
+            return np.zeros((len(X), 0, *X.shape[1:]))
+        return grassmann.transport(self.space.modes, self.space.mean, X[:, None])
+
+    @cached_property
+    def features(self) -> Array:
+        """The shapes, the carried modes, and a constant, (k, F, n)."""
+        X, V = self._shapes[1], self._carried
+        k, n, _ = X.shape
+        rows = [np.moveaxis(X, -1, 1), np.moveaxis(V, -1, 2).reshape(k, -1, n), np.ones((k, 1, n))]
+        return np.concatenate(rows, axis=1)
+
+    @cached_property
+    def _slopes(self) -> Array:
+        """The slopes of the features' splines, (k, n, F)."""
+        slopes = self.blade.splines.values(self.blade.u, 1) @ self.features.mT
+        return np.ascontiguousarray(slopes)
+
+    @cached_property
+    def _gram(self) -> Array:
+        """V_i^T V_j, (k, r * r, 4)."""
+        V = self._carried
+        k, r = V.shape[:2]
+        return (V.mT[:, :, None] @ V[:, None]).reshape(k, r * r, 4)
+
+    @cached_property
+    def _ruling(self) -> Array:
+        """The relative thickness that the baseline has or shall have, (k,)."""
+        plain, _, M, b = self._shapes
+        wanted = self.blade.wanted_thickness(self.eta)
+        if wanted is not None:
+            return wanted
+        return self.blade.splines.fit(affine.restore(plain, M, b)).relative_thickness
+
+    @cached_property
+    def before(self) -> Array:
+        """The relative thickness of the baseline's shapes before they are brought to it, (k,)."""
+        return self._curves_before.relative_thickness
+
+    @cached_property
+    def _curves_before(self) -> SectionCurves:
+        plain, _, M, b = self._shapes
+        return self.blade.splines.fit(affine.restore(plain, M, b))
+
+    @property
+    def _plain_ruling(self) -> Array:
+        """The relative thickness of the blade's sections before anything was perturbed, (k,)."""
+        ruling = self.blade.definition.relative_thickness
+        return self.before if ruling is None else ruling(self.eta)
+
+    @cached_property
+    def _looks_before(self) -> Array:
+        """The looks of the blade's sections before anything was perturbed, (k, 6)."""
+        return characteristics(self._curves_before, self._plain_ruling / self.before)
+
+    @cached_property
+    def _lines(self) -> tuple[ChordLines, Motions]:
+        """The baseline's chord lines at its own relative thickness, and how they got there."""
+        return self.blade.chord_lines(self.eta, self._ruling)
+
+    def _standing(self, target: Array) -> Array:
+        """Return where sections of relative thickness (k, b) shall stand, (k, b, 4).
+
+        Nose and trailing-edge midpoint of the chord lines that they keep, or the motions that
+        the baseline's own sections took: cosine and sine, and the shift.
+        """
+        kept = self.chord_line == KEPT
+
+        def numbers(lines: ChordLines, motions: Motions) -> Array:
+            parts = [lines.nose, lines.edge] if kept else [motions.R[:, 0], motions.s]
+            return np.concatenate(parts, axis=-1)
+
+        result = np.repeat(numbers(*self._lines)[:, None], target.shape[1], axis=1)
+        # where two noses compete, the line depends on the thickness
+        two = ~self._lines[0].alone & np.any(target != self._ruling[:, None], axis=1)
+        for k in np.flatnonzero(two):
+            eta = np.full(target.shape[1], self.eta[k])
+            result[k] = numbers(*self.blade.chord_lines(eta, target[k]))
+        return result
+
+    def coefficients(self, t: Array) -> Array:
+        """Return the coefficients (k, b, F, 2) of shapes with coordinates t (b, r)."""
+        _, _, M, b = self._shapes
+        k, r = self._carried.shape[:2]
+        count = len(t)
+        weighted = t * self._weight[:, None, None]
+        pairs = (weighted[..., :, None] * weighted[..., None, :]).reshape(k, count, r * r)
+        squares = np.zeros((k, count, 4))
+        for j in range(r * r):  # a matrix product would round by how many variants there are
+            squares += pairs[..., j, None] * self._gram[:, None, j]
+        cosine, sinc = grassmann.exp_factors(squares.reshape(k, count, 2, 2))
+        result = np.empty((k, count, 2 * r + 3, 2))
+        result[:, :, :2] = cosine @ M[:, None]
+        result[:, :, 2:-1] = (weighted[..., None, None] * (sinc @ M[:, None])[:, :, None]).reshape(
+            k, count, 2 * r, 2
+        )
+        result[:, :, -1] = b[:, None]
+        return result
+
+    def evaluate(
+        self,
+        t: Array,
+        change: AffineChange,
+        *,
+        dtype: type = np.float64,
+        measured: bool = False,
+    ) -> Batch:
+        """Make the sections of variants.
+
+        Parameters
+        ----------
+        t : (b, r) array
+            Coordinates along the modes [rad].
+        change : AffineChange
+            With arrays (b,) where variants differ.
+        dtype : type
+            Of the sections: float64 or float32.
+        measured : bool
+            Measure areas, centroids and so on.
+        """
+        shape = len(t), len(self.eta)
+        raw, target = self.coefficients(t), self._target(change, len(t))
+        to_space, chord, twist = self._placement(change, len(t))
+        sections: Array = np.empty((*shape, len(self.blade.u), 3), dtype=dtype)
+        measures = np.empty((*shape, len(polygons.MEASURES)) if measured else (0, 0, 0))
+        looks = np.empty((*shape, len(CHARACTERISTICS)))
+        width = self._edge_width(target.T, chord)
+        if width is not None:
+            faults = self._made(raw, target, chord, width, to_space, sections, measures, looks)
+        else:
+            plain = np.broadcast_to(np.eye(3), to_space.shape)
+            profiles = np.empty(sections.shape)
+            faults = self._made(
+                raw, target, chord, np.zeros(shape), plain, profiles, measures[:0], looks
+            )
+            for i in range(len(t)):
+                profiles[i, ..., :2] = self.blade.trailing_edge(profiles[i, ..., :2], chord[i])
+                np.matmul(profiles[i], to_space[i], out=sections[i], casting="same_kind")
+                if measured:
+                    scale = chord[i, :, None, None]
+                    measures[i] = polygons.measure(profiles[i, ..., :2] * scale)
+        if measured:
+            twist = twist + self._turned(sections, to_space)
+        return Batch(
+            sections,
+            chord,
+            twist,
+            target.T.copy(),
+            faults.T,
+            looks,
+            measures if measured else None,
+        )
+
+    def _turned(self, sections: Array, to_space: Array) -> Array:
+        """Return how far chord lines of sections (b, k, n, 3) turn from the baseline's, (b, k)."""
+        plain, _, M, b = self._shapes
+        before = angles(affine.restore(plain, M, b))
+        result = np.empty(sections.shape[:2])
+        for i, (section, axes) in enumerate(zip(sections, to_space, strict=True)):
+            local = (section - axes[:, None, 2]) @ axes[:, :2].mT  # chords squared
+            result[i] = angles(local) - before
+        return result
+
+    def faults(self, t: Array, change: AffineChange) -> tuple[Indices, Array]:
+        """Return what is wrong with the sections of variants, and their relative thickness.
+
+        Both (b, k), as `evaluate` gives them, without the sections.
+        """
+        return self.tested(t, change)[:2]
+
+    def tested(self, t: Array, change: AffineChange) -> tuple[Indices, Array, Array]:
+        """Return faults and relative thickness of variants, (b, k), and their looks (b, k, 6)."""
+        raw, target = self.coefficients(t), self._target(change, len(t))
+        chord, to_space, measures = np.empty((0, 0)), np.empty((0, 0, 0, 0)), np.empty((0, 0, 0))
+        looks = np.empty((len(t), len(self.eta), len(CHARACTERISTICS)))
+        faults = self._made(raw, target, chord, chord, to_space, to_space, measures, looks)
+        return faults.T, target.T, looks
+
+    def oddities(self, looks: Array) -> Oddities:
+        """Return what is odd about sections with looks (b, k, 6)."""
+        return oddities(looks, self._looks_before, self._plain_ruling)
+
+    @cached_property
+    def domain(self) -> Domain | None:
+        """Where the space's data allow the sections to go; None without a space."""
+        if self.space is None:
+            return None
+        return Domain.of(self.space, self.eta, self._shapes[1], self._ruling)
+
+    def step(self, t: Array) -> Array:
+        """Return by how much coordinates t (b, r) change those of the sections, (b, k, r)."""
+        return t[:, None] * self._weight[:, None]
+
+    def _target(self, change: AffineChange, count: int) -> Array:
+        """Return the relative thickness to reach, (k, b)."""
+        thickening = faded(np.ones(1), self._weight[:, None], _column(change.thickening).T)
+        target: Array = self._ruling[:, None] * thickening
+        return np.broadcast_to(target, (len(self.eta), count))
+
+    def _made(
+        self,
+        raw: Array,
+        target: Array,
+        chord: Array,
+        edge: Array,
+        to_space: Array,
+        sections: Array,
+        measures: Array,
+        looks: Array,
+    ) -> Indices:
+        """Fill looks, sections and measures that have a length; return what is wrong, (k, b)."""
+        from bladegen.variants import kernels
+
+        own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
+        standing = self._standing(target) if sections.size else target[..., None]
+        given = [self.blade.u, self.features, self._slopes, raw, target, standing, own, known]
+        flat = self._plain_ruling[:, None] / target
+        given += [chord, to_space, sections, measures, edge, flat, looks]
+        # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise
+        kernels.made(
+            *(np.require(values, requirements=["C", "W"]) for values in given),
+            self.chord_line == KEPT,
+        )
+        return self._faults(raw, own, known)
+
+    def _faults(self, raw: Array, own: Array, known: Indices) -> Indices:
+        """Return what is wrong with sections (k, b): a place in `FAULTS`."""
+        from bladegen.variants import kernels
+
+        faults: Indices = np.full(own.shape, SOUND)
+        ends = self.features[..., 0] - self.features[..., -1]
+        gap = (ends[:, None, None] @ raw)[:, :, 0, 1]
+        faults[gap < TURNED_EDGE] = TURNED
+        faults[~(own > LOST_THICKNESS * self.before[:, None])] = THIN
+        faults[known == kernels.CROSSING] = CROSSING
+        k, b = np.nonzero(known == kernels.OPEN)
+        crossing = crossing_sections(self.features[k].mT @ raw[k, b])
+        faults[k[crossing], b[crossing]] = CROSSING
+        return faults
+
+    def _edge_width(self, thickness: Array, chord: Array) -> Array | None:
+        """Return the least width of edges over the chord (b, k); None if another rule holds."""
+        edge: TrailingEdge = self.blade.trailing_edge
+        if type(edge) is MinimumThickness:
+            edge.require_room(thickness, chord)
+            return edge.width(chord)
+        return np.zeros(chord.shape) if type(edge) is AsGiven else None
+
+    def _placement(self, change: AffineChange, count: int) -> tuple[Array, Array, Array]:
+        """Return the maps (b, k, 3, 3) of (x, y, 1) to space, and chord and twist (b, k)."""
+        eta, weight, definition = self.eta, self._weight, self.blade.definition
+        widening, whole = _column(change.widening), _column(change.chord_scale)
+        chord = whole * faded(self.blade.chord(eta), weight, widening)
+        twist = faded(
+            _column(change.twist_scale) * self.blade.twist(eta), weight, 1.0, _column(change.twist)
+        )
+        offset_y = whole * faded(definition.offset_y(eta), weight, widening)
+        offset = np.stack(np.broadcast_arrays(-offset_y, definition.offset_x(eta)), axis=-1)
+        axis, frames = self._axis(np.asarray(change.prebend_scale, dtype=np.float64))
+        axes, start = placement(chord, twist, offset, axis, frames)
+        shape = count, len(eta)
+        to_space = np.concatenate([axes, start[..., None, :]], axis=-2)
+        return (
+            np.broadcast_to(to_space, (*shape, 3, 3)),
+            np.array(np.broadcast_to(chord, shape)),
+            np.array(np.broadcast_to(twist, shape)),
+        )
+
+    def _axis(self, prebend_scale: Array) -> tuple[Array, Array]:
+        """Return reference axes (b or 1, k, 3) and section frames (b or 1, k, 3, 3)."""
+        values, inverse = np.unique(prebend_scale, return_inverse=True)
+        standing = [self._own_axis if value == 1.0 else self._bent(value) for value in values]
+        axes, frames = (np.stack(parts) for parts in zip(*standing, strict=True))
+        index = np.atleast_1d(inverse)
+        return axes[index], frames[index]
+
+    @cached_property
+    def _own_axis(self) -> tuple[Array, Array]:
+        return self._bent(1.0)
+
+    def _bent(self, prebend_scale: float) -> tuple[Array, Array]:
+        """Return the axis and the frames, which are carried along it, of one prebend."""
+        change = AffineChange(prebend_scale=float(prebend_scale))
+        axis = change.applied(self.blade.definition, self.window).axis
+        return axis(self.eta), self.blade.planes(axis)(self.eta)
+
+
+def _column(value: ArrayLike) -> Array:
+    """Return a number, or one a variant (b,), as (1, 1) or (b, 1)."""
+    return np.atleast_1d(np.asarray(value, dtype=np.float64))[:, None]

@@ -1,0 +1,334 @@
+"""Designs of experiments: which variants a family holds.
+
+A design says for each variant where it lies along some factors: coordinates along the modes of
+a shape space (t1, t2, ... in radians) and the affine parameters of `deformation.AffineChange`.
+Points of the unit cube (scipy.stats.qmc, or independent ones) are carried to a region: the box
+between bounds, the ellipsoid that contains the data of a space, or the normal distribution with
+the data's covariance.  Variant i depends on the seed and on i alone (with a Latin hypercube on
+the count as well), whoever asks and in whatever order.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bladegen.blade.deformation import RANGES, AffineChange, in_units
+from bladegen.errors import DesignError
+from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.support.arguments import amount, instance, numbers, one_of, shown, suggestion, whole
+from bladegen.support.arrays import Array, Indices, Mask, readonly
+from bladegen.variants import draws
+from bladegen.variants.draws import Points, Seed, seed_of
+
+__all__ = ["DESIGNS", "Design", "Factors", "factors", "tabulated"]
+
+MOST = 10**7  # variants
+MOST_LATIN = 10**6
+
+
+@dataclass(frozen=True, eq=False)
+class Factors:
+    """What varies, and between which bounds.
+
+    Parameters
+    ----------
+    names : tuple of str
+        "t1" to "tr", then parameters of `AffineChange`; radians.
+    low, high : (d,) arrays
+        Bounds.
+    spread : (d,) array
+        Standard deviation of the data along coordinates, zero for affine parameters.
+    reach : float
+        How many standard deviations the ellipsoid of the data extends.
+    """
+
+    names: tuple[str, ...]
+    low: Array
+    high: Array
+    spread: Array
+    reach: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high", "spread"):
+            object.__setattr__(self, name, readonly(getattr(self, name)))
+
+    @property
+    def shape(self) -> Mask:
+        """Which factors are coordinates of shape, (d,)."""
+        return np.array([name not in RANGES for name in self.names], dtype=bool)
+
+    def split(self, values: Array, modes: int) -> tuple[Array, AffineChange]:
+        """Return coordinates (b, modes) and affine parameters of variants (b, d)."""
+        t = np.zeros((len(values), modes))
+        changes = {}
+        for name, column in zip(self.names, values.T, strict=True):
+            if name in RANGES:
+                changes[name] = column
+            else:
+                t[:, int(name[1:]) - 1] = column
+        return t, AffineChange(**changes)
+
+    def outside(self, values: Array) -> list[str]:
+        """Say of each variant (b, d) which factor leaves its bounds; "" if none does.
+
+        Coordinates may lie in the box of the bounds or in the data's ellipsoid.
+        """
+        beyond = (values < self.low) | (values > self.high)
+        shape = self.shape & (self.spread > 0)
+        scaled = values[:, shape] / self.spread[shape]
+        within = np.linalg.norm(scaled, axis=1) <= self.reach * (1.0 + 1e-12)
+        beyond &= ~(within[:, None] & shape)
+        first, any_beyond = np.argmax(beyond, axis=1), np.any(beyond, axis=1).tolist()
+        return [
+            f"{self.names[j]} = {row[j]:.6g} is outside {self.low[j]:.6g} to {self.high[j]:.6g}"
+            if leaves
+            else ""
+            for row, j, leaves in zip(values, first, any_beyond, strict=True)
+        ]
+
+
+def factors(
+    space: ShapeSpace | None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    *,
+    reach: float = 1.0,
+) -> Factors:
+    """Return what varies: all coordinates of a space, and what bounds are given for.
+
+    Parameters
+    ----------
+    space : ShapeSpace, optional
+        Whose coordinates vary between the least and largest of its data.
+    bounds : mapping of str to (low, high), optional
+        Bounds of the user's own, of coordinates or affine parameters; equal ones hold a factor.
+    reach : float
+        Share of the space's bounds and of its ellipsoid that is used.
+
+    Raises
+    ------
+    DesignError
+        If a name is unknown, or bounds are reversed or not allowed.
+    """
+    bounds = {} if bounds is None else bounds
+    must = "a mapping such as {'thickness': (0.9, 1.1)}"
+    instance(bounds, Mapping, "bounds", must, DesignError)
+    bounds = dict(bounds)
+    reach = amount(reach, "reach", DesignError)
+    if not 0 < reach <= 1:
+        raise DesignError(f"reach: got {reach:g}, allowed is more than 0 and at most 1")
+    names = [] if space is None else [f"t{j + 1}" for j in range(space.dimension)]
+    allowed = [*names, *RANGES]
+    for name, pair in bounds.items():
+        if name not in allowed:
+            near = suggestion(name, allowed)
+            raise DesignError(f"factor {name!r}: allowed are {', '.join(allowed)}{near}")
+        if np.shape(numbers(pair, name, DesignError, "two bounds, (low, high)")) != (2,):
+            raise DesignError(f"{name}: got {shown(pair)}, must be two bounds, (low, high)")
+        low, high = pair
+        if not low <= high:
+            raise DesignError(f"{name}: bounds are {low:g} to {high:g}, must not fall")
+        least, most = RANGES.get(name, (-np.inf, np.inf))
+        if not least <= low <= high <= most:
+            raise DesignError(
+                f"{name}: bounds are {in_units(name, low)} to {in_units(name, high)}, allowed is "
+                f"{in_units(name, least)} to {in_units(name, most)}"
+            )
+    lows: list[float] = []
+    highs: list[float] = []
+    spread: list[float] = []
+    extent = 0.0
+    if space is not None:
+        for j, name in enumerate(names):
+            given = bounds.get(name)
+            least, most = given or (reach * space.lower[j], reach * space.upper[j])
+            lows.append(float(least))
+            highs.append(float(most))
+            spread.append(0.0 if given else float(np.sqrt(space.variances[j])))
+        extent = reach * space.extent
+    for name in RANGES:
+        if name in bounds:
+            names.append(name)
+            lows.append(bounds[name][0])
+            highs.append(bounds[name][1])
+            spread.append(0.0)
+    if not names:
+        raise DesignError("nothing varies: give a shape space, or bounds of a factor")
+    return Factors(tuple(names), np.array(lows), np.array(highs), np.array(spread), extent)
+
+
+Region = Callable[[Factors, Array], Array]
+
+
+def _box(what: Factors, unit: Array) -> Array:
+    return what.low + unit * (what.high - what.low)
+
+
+def _ellipsoid(what: Factors, unit: Array) -> Array:
+    """Carry points uniform in a cube to points uniform in the ellipsoid of the data.
+
+    Normal deviates give the direction, and the distribution function of their length, which is
+    that of chi, a radius whose r-th power is uniform.  What has no spread fills its box.
+    """
+    from scipy.stats import chi2, norm
+
+    result, shape = _box(what, unit), what.spread > 0
+    r = int(np.count_nonzero(shape))
+    if r:
+        normal = norm.ppf(np.clip(unit[:, shape], 1e-15, 1 - 1e-15))
+        squares = np.sum(normal**2, axis=1, keepdims=True)
+        radius = chi2.cdf(squares, r) ** (1.0 / r) / np.sqrt(squares)
+        result[:, shape] = what.reach * radius * normal * what.spread[shape]
+    return result
+
+
+def _normal(what: Factors, unit: Array) -> Array:
+    """Carry points of a cube to the normal distribution of the data; the rest fills its box."""
+    from scipy.stats import norm
+
+    result, shape = _box(what, unit), what.spread > 0
+    result[:, shape] = norm.ppf(np.clip(unit[:, shape], 1e-15, 1 - 1e-15)) * what.spread[shape]
+    return result
+
+
+DESIGNS: dict[str, tuple[str, Points, Region]] = {
+    "sobol": ("Sobol points (scrambled) in the box of the bounds", draws.sobol, _box),
+    "lhs": ("a Latin hypercube in the box", draws.latin, _box),
+    "box": ("independent, uniform in the box", draws.independent, _box),
+    "ellipsoid": (
+        "independent, in the ellipsoid of the data",
+        draws.independent,
+        _ellipsoid,
+    ),
+    "normal": ("independent, with the data's covariance", draws.independent, _normal),
+    "sweep": (
+        "from corner to opposite corner of the box, each diagonal in turn",
+        draws.corners,
+        _box,
+    ),
+}
+FIXED = ("sweep", "table")  # designs whose points are wanted as they are
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A plan of variants, each drawn when it is asked for: a plan of millions takes no memory.
+
+    Parameters
+    ----------
+    what : Factors
+        What varies.
+    kind : str
+        One of `DESIGNS`, or "table".
+    seed : int
+        Of the draws, not negative.
+    count : int
+        How many variants.
+    table : (count, d) array, optional
+        Where each variant of a "table" lies.
+    """
+
+    what: Factors
+    kind: str
+    seed: int
+    count: int
+    table: Array | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.table is not None:
+            object.__setattr__(self, "table", readonly(self.table))
+
+    @classmethod
+    def of(cls, what: Factors, kind: str, count: int, seed: Seed) -> "Design":
+        """Plan `count` variants.
+
+        Raises
+        ------
+        DesignError
+            If there is no such kind, or count or seed are out of range.
+        """
+        one_of(kind, DESIGNS, "design", DesignError)
+        count = whole(count, "count", DesignError)
+        if not 1 <= count <= MOST:
+            raise DesignError(f"count: got {count}, allowed is 1 to {MOST}")
+        if kind == "lhs" and count > MOST_LATIN:
+            raise DesignError(
+                f"count: got {count}, a Latin hypercube is drawn whole: allowed is 1 to "
+                f"{MOST_LATIN}; sobol takes any number"
+            )
+        return cls(what, kind, seed_of(seed), count)
+
+    def __len__(self) -> int:
+        return self.count
+
+    def at(self, index: Indices) -> Array:
+        """Return where variants lie, their first attempts, (b, d)."""
+        if self.table is not None:
+            return self.table[index]
+        _, points, region = DESIGNS[self.kind]
+        unit = points(np.asarray(index), self.count, len(self.what.names), self.seed)
+        return region(self.what, unit)
+
+    @property
+    def values(self) -> Array:
+        """Where all variants lie, first attempts, (count, d)."""
+        return self.at(np.arange(self.count))
+
+    @property
+    def redraws(self) -> bool:
+        """Whether a variant that is not sound may be drawn again."""
+        return self.kind not in FIXED
+
+    def redrawn(self, index: Indices, attempt: int) -> Array:
+        """Return other values (m, d) of some variants: independent draws in the same region."""
+        region = DESIGNS[self.kind][2]
+        dimension = len(self.what.names)
+        unit = [draws.point(self.seed, int(i), attempt, dimension) for i in index]
+        return region(self.what, np.stack(unit))
+
+
+def tabulated(space: ShapeSpace | None, columns: Mapping[str, Sequence[float] | Array]) -> Design:
+    """Return the design that a table of the user's own lists.
+
+    Parameters
+    ----------
+    space : ShapeSpace, optional
+        Whose coordinates t1, t2, ... may be columns.
+    columns : mapping of str to (count,) arrays
+        Names of factors and their values; radians.
+
+    Raises
+    ------
+    DesignError
+        If a column is unknown, of another length, or not finite.
+    """
+    modes = 0 if space is None else space.dimension
+    allowed = [*(f"t{j + 1}" for j in range(modes)), *RANGES]
+    names = [name for name in allowed if name in columns]
+    unknown = [name for name in columns if name not in allowed]
+    if unknown or not names:
+        given = unknown[0] if unknown else "no factor"
+        raise DesignError(f"table: got {given!r}, allowed columns are {', '.join(allowed)}")
+    lists = [numbers(columns[name], f"table: {name}", DesignError) for name in names]
+    if len({column.shape for column in lists}) > 1 or lists[0].ndim != 1:
+        lengths = ", ".join(f"{n}: {c.size}" for n, c in zip(names, lists, strict=True))
+        raise DesignError(f"table: columns must be lists of one length, got {lengths}")
+    values = np.stack(lists, axis=1)
+    bad = np.argwhere(~np.isfinite(values))
+    if bad.size:
+        row, column = bad[0]
+        raise DesignError(f"table: row {row + 1}, {names[column]}: must be a number")
+    if not len(values):
+        raise DesignError("table: holds no rows")
+    for name, column in zip(names, values.T, strict=True):
+        low, high = RANGES.get(name, (-np.inf, np.inf))
+        wrong = np.flatnonzero((column < low) | (column > high))
+        if wrong.size:
+            raise DesignError(
+                f"table: row {wrong[0] + 1}, {name}: got {in_units(name, column[wrong[0]])}, "
+                f"allowed is {in_units(name, low)} to {in_units(name, high)}"
+            )
+    known = factors(space, {name: RANGES[name] for name in names if name in RANGES})
+    at = [known.names.index(name) for name in names]
+    what = Factors(tuple(names), known.low[at], known.high[at], known.spread[at], known.reach)
+    return Design(what, "table", 0, len(values), values)

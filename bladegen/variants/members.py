@@ -1,0 +1,45 @@
+"""What a batch of variants is: their sections at fixed spans, and what is wrong with each."""
+
+from dataclasses import dataclass, fields
+
+from bladegen.support.arrays import Array, Indices
+
+__all__ = ["CROSSING", "FAULTS", "SOUND", "THIN", "TURNED", "Batch"]
+
+SOUND, CROSSING, THIN, TURNED = range(4)
+FAULTS = ("", "crosses itself", "loses its thickness", "turns its trailing edge over")
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Sections of b variants at k spans.
+
+    Parameters
+    ----------
+    sections : (b, k, n, 3) array
+        Points [m], blade frame, trailing edges finished.
+    chord, twist, relative_thickness : (b, k) arrays
+        [m], [rad], of the chord.
+    faults : (b, k) array of int
+        What is wrong with each section, a place in `FAULTS`.
+    looks : (b, k, 6) array
+        `sanity.CHARACTERISTICS` of each, for `SectionBatch.oddities`.
+    measures : (b, k, 7) array, optional
+        `polygons.MEASURES` of the sections [m], in axes along the chord from the leading edge
+        and normal to it.
+    """
+
+    sections: Array
+    chord: Array
+    twist: Array
+    relative_thickness: Array
+    faults: Indices
+    looks: Array
+    measures: Array | None = None
+
+    def take(self, rows: Indices, other: "Batch") -> None:
+        """Put the variants of another batch in the place of some."""
+        for entry in fields(self):
+            values = getattr(self, entry.name)
+            if values is not None:
+                values[rows] = getattr(other, entry.name)

@@ -1,0 +1,223 @@
+"""Pictures of blades as PNG: one with three views to scale, many side by side, and one view."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.blade.blade import Blade
+from bladegen.support.arrays import Array, Indices
+from bladegen.support.files import require_suffix
+from bladegen.surface.mesh import TriangleMesh, surface
+from bladegen.surface.vtk_files import save
+from bladegen.views.blade_scene import scene_of
+from bladegen.views.cameras import VIEWS
+from bladegen.views.drawing import (
+    add_colour_bar,
+    add_lines,
+    add_surface,
+    add_words,
+    dress,
+    look,
+    poly,
+    shaded,
+)
+from bladegen.views.renderer import image_of, quietly, require_renderer
+from bladegen.views.scene import Field, Scene
+from bladegen.views.style import INK
+
+__all__ = ["gallery", "picture", "save_image", "write_vtp"]
+
+SIZE = (1920, 1080)
+VIEW, STRIP = 0.54, 0.23  # shares of a figure's height
+OBLIQUE = VIEWS["oblique"]
+
+
+def picture(
+    blade: Blade,
+    path: Path,
+    *,
+    baseline: Blade | None = None,
+    colour: str = "plain",
+    size: tuple[int, int] = SIZE,
+) -> None:
+    """Render a blade to a PNG: perspective above, planform and side view below, to scale.
+
+    Parameters
+    ----------
+    blade : Blade
+        What is shown.
+    path : Path
+        The PNG.
+    baseline : Blade, optional
+        What `blade` was perturbed from; needed for distances.
+    colour : str
+        "plain", "curvature" or "distance".
+    size : (int, int)
+        Pixels.
+
+    Raises
+    ------
+    RenderError
+        If this machine cannot render, there is no such colour, or the picture came out blank.
+    """
+    require_renderer()
+    scene = scene_of(blade, baseline, colours=(colour,))
+    field = None if colour == "plain" else scene.field(colour)
+    with quietly():
+        image = image_of(_figure(blade, scene, field, size), f"{path}: the picture")
+    save_image(image, path)
+
+
+def save_image(image: Indices, path: Path) -> None:
+    """Write an image (height, width, 3) as a PNG.
+
+    Raises
+    ------
+    ExportError
+        If the file's name does not end in .png.
+    """
+    require_suffix(path, (".png",))
+    from PIL import Image
+
+    Image.fromarray(image).save(path, format="PNG", optimize=True)
+
+
+def gallery(
+    sections: Array, names: Sequence[str], *, columns: int, size: tuple[int, int]
+) -> Indices:
+    """Render blades given by their sections (b, k, n, 3) side by side, all seen alike.
+
+    Returns
+    -------
+    (height, width, 3) array
+        Red, green and blue, 0 to 255.
+
+    Raises
+    ------
+    RenderError
+        If this machine cannot render, or the picture came out blank.
+    """
+    import pyvista as pv
+
+    require_renderer()
+    rows = -(-len(sections) // columns)
+    with quietly():
+        plotter = pv.Plotter(
+            off_screen=True, window_size=list(size), shape=(rows, columns), border=False
+        )
+        aspect = size[0] * rows / (size[1] * columns)
+        points = sections[:, :, ::10].reshape(-1, 3)
+        for place, (loops, name) in enumerate(zip(sections, names, strict=True)):
+            plotter.subplot(*divmod(place, columns))
+            dress(plotter)
+            add_surface(plotter, shaded(surface(loops)))
+            look(plotter, points, OBLIQUE, aspect)
+            plotter.add_text(name, position=(10, 6), font_size=8, color=INK)
+        return image_of(plotter, "the gallery")
+
+
+def write_vtp(mesh: TriangleMesh, path: Path, *, scale: float = 1.0) -> None:
+    """Write a mesh as VTK poly data, lengths times `scale`, with eta and u where it has them."""
+    made = poly(mesh, scale)
+    if mesh.places is not None:
+        made["eta"], made["u"] = (np.array(column) for column in mesh.places.T)
+    save(made, path)
+
+
+def _figure(blade: Blade, scene: Scene, field: Field | None, size: tuple[int, int]) -> Any:
+    """The plotter of `picture`: a large view over two strips that share one scale."""
+    import pyvista as pv
+
+    plotter = pv.Plotter(
+        off_screen=True,
+        window_size=list(size),
+        shape=(3, 1),
+        row_weights=[VIEW, STRIP, STRIP],
+        border=False,
+    )
+    shown = shaded(scene.surface, scene.fields)
+    plotter.subplot(0, 0)
+    actor = _add_blade(plotter, scene, shown, field)
+    look(plotter, scene.surface.vertices, OBLIQUE, size[0] / (VIEW * size[1]))
+    marked = "; stations of the definition marked"
+    place = 24, int(VIEW * size[1]) - 88
+    add_words(plotter, f"{scene.title}\n{scene.caption}{marked}", place, 13)
+    if field is not None:
+        add_colour_bar(plotter, actor, field.label)
+
+    for row, (title, view) in enumerate(
+        (("planform, suction side", "planform"), ("edgewise, trailing edge", "side")), start=1
+    ):
+        plotter.subplot(row, 0)
+        _add_blade(plotter, scene, shown, field)
+        _strip_view(plotter, blade, view, size)
+        plotter.add_text(
+            title, position=(int(0.8 * size[0]), int(STRIP * size[1]) - 48), font_size=10, color=INK
+        )
+    return plotter
+
+
+def _add_blade(plotter: Any, scene: Scene, shown: Any, field: Field | None) -> Any:
+    """Add the surface, and the definition's stations as lines on it."""
+    dress(plotter)
+    actor = add_surface(plotter, shown, field)
+    for layer in scene.layers:
+        if layer.name == "stations":
+            add_lines(plotter, layer.lines, layer.colour if field is None else INK, layer.width)
+    return actor
+
+
+def _strip_view(plotter: Any, blade: Blade, view: str, size: tuple[int, int]) -> None:
+    """Look at the blade at right angles, root at the left, over a ruler in metres."""
+    length = blade.length
+    across, away = (1, 0) if view == "planform" else (0, 1)
+    # y points down in one view; in the other x points up, or down where one looks from -y
+    down = 1.0 if view == "planform" or blade.mirrored else -1.0
+    behind = -1.0 if blade.mirrored and view == "side" else 1.0  # where the trailing edge lies
+    seen = down * blade.sections(np.linspace(0.0, 1.0, 50))[..., across]
+    base = float(seen.max()) + 0.012 * length
+    middle = np.zeros(3)
+    middle[across] = down * 0.5 * (float(seen.min()) - 0.012 * length + base + 0.03 * length)
+    middle[2] = 0.5 * length
+    eye, up = middle.copy(), np.zeros(3)
+    eye[away] += behind * length
+    up[across] = -down
+    plotter.camera_position = [eye, middle, up]
+    plotter.enable_parallel_projection()
+    width_over_height = size[0] / (STRIP * size[1])
+    plotter.camera.parallel_scale = 0.5 * 1.08 * length / width_over_height
+    _add_ruler(plotter, length, across, down * base, down)
+
+
+def _add_ruler(plotter: Any, length: float, across: int, base: float, down: float) -> None:
+    """Add a scale along z with ticks at round lengths, at `base` on the axis `across`."""
+    import pyvista as pv
+
+    marks = np.arange(0.0, length + 1e-9, _round_step(length))
+    ticks = np.zeros((len(marks) + 1, 2, 3))
+    ticks[:-1, :, 2] = marks[:, None]
+    ticks[:-1, :, across] = base, base + down * 0.006 * length
+    ticks[-1, :, 2], ticks[-1, :, across] = (0.0, length), base
+    segments = pv.line_segments_from_points(ticks.reshape(-1, 3))
+    plotter.add_mesh(segments, color=INK, line_width=2)
+    labels = ticks[:-1, 1].copy()
+    labels[:, across] += down * 0.011 * length
+    plotter.add_point_labels(
+        labels,
+        [f"{mark:g} m" for mark in marks],
+        font_size=15,
+        text_color=INK,
+        shape=None,
+        show_points=False,
+        always_visible=True,
+        justification_horizontal="center",
+        justification_vertical="center",
+    )
+
+
+def _round_step(length: float) -> float:
+    """Return 1, 2 or 5 times a power of ten that divides a length in about ten."""
+    power = 10.0 ** np.floor(np.log10(length / 10.0))
+    return float(min((1.0, 2.0, 5.0, 10.0), key=lambda f: abs(f * power - length / 10.0)) * power)

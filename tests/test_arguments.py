@@ -211,7 +211,9 @@ def test_tolerances_that_cannot_be_meant_are_refused(tmp_path, tolerance):
 def test_options_that_are_none_name_the_one_that_is_meant(tmp_path):
     with pytest.raises(ExportError, match=r"tolerence: no option .*did you mean tolerance"):
         bg.export(BLADE, tmp_path / "x.stl", tolerence=1e-3)
-    with pytest.raises(ExportError, match=r"tip: got 'round', must be bladegen\.tips\.flat_tip or"):
+    with pytest.raises(
+        ExportError, match=r"tip: got 'round', must be bladegen\.surface\.tips\.flat_tip or"
+    ):
         bg.export(BLADE, tmp_path / "x.stl", tip="round")
     assert Options(tip=tips.round_tip).stations == 300
 

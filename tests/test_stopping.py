@@ -54,12 +54,14 @@ def test_a_worker_that_holds_the_lock_ends_with_its_killed_parent(script):
 def test_a_signal_is_said_in_a_line_and_handlers_are_put_back(
     monkeypatch, capsys, number, words, status
 ):
+    inherited = signal.signal(number, signal.default_int_handler)  # a shell's & ignores SIGINT
     before = signal.getsignal(number)
     monkeypatch.setattr(commands, "app", lambda: signal.raise_signal(number))
     with pytest.raises(SystemExit, match=str(status)):
         commands.main()
     assert capsys.readouterr().err == f"bladegen: {words}\n"
     assert signal.getsignal(number) is before
+    signal.signal(number, inherited)
 
 
 def test_ignored_signals_stay_ignored_and_a_second_one_is_the_systems():

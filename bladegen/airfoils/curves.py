@@ -9,14 +9,14 @@ normal to the chord line, over the chord.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from bladegen.airfoils.resizing import RIVAL, resizing, stretching
 from bladegen.airfoils.roots import ITERATIONS, PARAMETER_TOLERANCE, bracketed, falling
 from bladegen.errors import GeometryError
-from bladegen.support.arrays import Array, Indices, Mask, mapped
+from bladegen.support.arrays import Array, Indices, Mask, mapped, readonly
 
 __all__ = ["SectionCurves", "SectionSplines"]
 
@@ -24,7 +24,17 @@ SETTLED = 1e-13  # change of a stretch that ends its iteration
 EVEN = 1e-11  # of `AMBIGUOUS`; differences of distances that are rounding
 SAME_NOSE = 3  # landmarks; nearer peaks are one nose
 AMBIGUOUS = 2e-5  # of a chord; noses whose distances differ by less share the leading edge
+REMEMBERED = 8  # sets of landmark parameters whose matrices are kept, 1.3 MB each for 401
 WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _slope_matrix(parameters_in_bytes: bytes) -> Array:
+    """Return the matrix of `SectionSplines`, shared by all blades with the same landmarks."""
+    from scipy.interpolate import CubicSpline
+
+    u = np.frombuffer(parameters_in_bytes)
+    return readonly(CubicSpline(u, np.eye(len(u)))(u, 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +56,7 @@ class SectionSplines:
     @cached_property
     def _slopes(self) -> Array:
         """The (n, n) matrix from points to the slopes of their not-a-knot cubic spline."""
-        from scipy.interpolate import CubicSpline
-
-        slopes: Array = CubicSpline(self.u, np.eye(len(self.u)))(self.u, 1)
-        return slopes
+        return _slope_matrix(self.u.tobytes())
 
     def values(self, u: Array, derivative: int = 0) -> Array:
         """Return the (m, n) matrix from landmarks to points, or derivatives, at `u`."""

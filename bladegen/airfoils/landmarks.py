@@ -9,6 +9,7 @@ on every airfoil, the root circle included.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,6 +41,7 @@ LARGEST = 1e6  # chords; points farther apart than this cannot be told from repe
 CORNER_TURN = np.radians(40.0)  # leading edges turn by up to 28 degrees a point in real files
 BLUNT_BASE = 0.02  # chords; corners nearer than this to the trailing edge end the sides
 BLUNT_MINIMUM = 1e-3  # chords; a base lower than this is rounding, not a flatback
+REMEMBERED = 512  # contours, and sets of landmarks; some 20 MB
 _GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
@@ -119,21 +121,7 @@ class Contour:
             0 to 0.5 along the suction side, 0.5 to 1 along the pressure side, as
             `landmark_parameters` makes them.
         """
-        knots = np.union1d(self.spline.x, [self.leading_edge])
-        arc = np.concatenate([[0.0], np.cumsum(_lengths(self.spline, knots[:-1], knots[1:]))])
-        nose = arc[np.searchsorted(knots, self.leading_edge)]
-        suction = 2.0 * parameters * nose
-        pressure = nose + (2.0 * parameters - 1.0) * (arc[-1] - nose)
-        target = np.where(parameters <= 0.5, suction, pressure)
-        segment = np.clip(np.searchsorted(arc, target, side="right") - 1, 0, len(knots) - 2)
-        start, end = knots[segment], knots[segment + 1]
-        t = start + (end - start) * (target - arc[segment]) / (arc[segment + 1] - arc[segment])
-        for _ in range(4):  # Newton; the parameter is nearly arc length, so two steps would do
-            excess = arc[segment] + _lengths(self.spline, start, t) - target
-            speed = np.hypot(*self.spline(t, 1).T)  # 0 where a contour turns back on itself
-            step = np.divide(excess, speed, out=np.zeros_like(excess), where=speed > 0)
-            t = np.clip(t - step, start, end)
-        return readonly(self.spline(t))
+        return _placed(self, np.asarray(parameters, dtype=np.float64).tobytes())
 
 
 def landmarks(coordinates: Array, n: int = 401, *, spacing: Spacing = clustered) -> Array:
@@ -193,14 +181,45 @@ def contour(coordinates: Array, *, fairing: float | None = None) -> Contour:
     SNL-FFA-W3-500) is no part of the sides: it is taken as the open edge that it is.
 
     With `fairing`, the spline passes the points by at most that distance in chords, and noise of
-    their digits is left out (`fairing`); without, it passes through them.
+    their digits is left out (`fairing`); without, it passes through them.  The same points get
+    the same contour, fitted once: blades share their airfoils with their variants and copies.
     """
+    points = numbers(coordinates, "airfoil", GeometryError)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise GeometryError(f"airfoil: got the shape {points.shape}, must be (m, 2)")
+    return _fitted(points.tobytes(), fairing)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _fitted(points_in_bytes: bytes, fairing: float | None) -> Contour:
+    coordinates = np.frombuffer(points_in_bytes).reshape(-1, 2)
     given, opened = _without_base(oriented(coordinates))
     points = given if fairing is None else fair(given, fairing)
     spline = _spline(points)
     middle = 0.5 * (points[0] + points[-1])
     moved = float(np.hypot(*(points - given).T).max())
     return Contour(spline, _farthest(spline, middle), opened, moved)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _placed(curve: Contour, parameters_in_bytes: bytes) -> Array:
+    """Return the points of a contour at landmark parameters; see `Contour.landmarks`."""
+    parameters = np.frombuffer(parameters_in_bytes)
+    knots = np.union1d(curve.spline.x, [curve.leading_edge])
+    arc = np.concatenate([[0.0], np.cumsum(_lengths(curve.spline, knots[:-1], knots[1:]))])
+    nose = arc[np.searchsorted(knots, curve.leading_edge)]
+    suction = 2.0 * parameters * nose
+    pressure = nose + (2.0 * parameters - 1.0) * (arc[-1] - nose)
+    target = np.where(parameters <= 0.5, suction, pressure)
+    segment = np.clip(np.searchsorted(arc, target, side="right") - 1, 0, len(knots) - 2)
+    start, end = knots[segment], knots[segment + 1]
+    t = start + (end - start) * (target - arc[segment]) / (arc[segment + 1] - arc[segment])
+    for _ in range(4):  # Newton; the parameter is nearly arc length, so two steps would do
+        excess = arc[segment] + _lengths(curve.spline, start, t) - target
+        speed = np.hypot(*curve.spline(t, 1).T)  # 0 where a contour turns back on itself
+        step = np.divide(excess, speed, out=np.zeros_like(excess), where=speed > 0)
+        t = np.clip(t - step, start, end)
+    return readonly(curve.spline(t))
 
 
 def _without_base(points: Array) -> tuple[Array, float]:

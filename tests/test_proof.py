@@ -11,7 +11,7 @@ from bladegen.definition.blade_definition import Airfoil, Distribution, Station
 from bladegen.errors import ExportError, Finding
 from bladegen.formats.into import write_into
 from bladegen.formats.proof import compared, proven, put_in_place, taken_back
-from bladegen.formats.windio import writing2
+from bladegen.formats.windio import version2
 from bladegen.formats.writing import FORMATS
 from strategies import naca
 
@@ -76,7 +76,7 @@ def test_what_comes_back_as_another_blade_is_said_in_figures(small):
 
 def test_a_writer_that_loses_something_is_found_out(tmp_path, small):
     def lossy(path: Path) -> tuple[Finding, ...]:
-        writing2.write(replace(small, twist=Distribution.constant(0.0)), path)
+        version2.write(replace(small, twist=Distribution.constant(0.0)), path)
         return (Finding("own", "remark"),)
 
     said = proven(lossy, tmp_path / "blade.yaml", small, 1e-3)

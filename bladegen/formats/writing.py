@@ -22,8 +22,7 @@ from bladegen.formats.hawc2 import writing as hawc2
 from bladegen.formats.openfast import writing as openfast
 from bladegen.formats.proof import GRID, WHOLE, proven
 from bladegen.formats.tables import writing as spanwise_table
-from bladegen.formats.windio import writing1 as windio1
-from bladegen.formats.windio import writing2 as windio2
+from bladegen.formats.windio import version1, version2
 from bladegen.support.arguments import instance, path_of, suggestion
 from bladegen.support.files import require_suffix
 
@@ -66,8 +65,8 @@ class Format:
 
 
 FORMATS = (
-    Format("windio2", "windIO 2", (".yaml", ".yml"), windio2.write, polars=True),
-    Format("windio1", "windIO 1", (".yaml", ".yml"), windio1.write, polars=True),
+    Format("windio2", "windIO 2", (".yaml", ".yml"), version2.write, polars=True),
+    Format("windio1", "windIO 1", (".yaml", ".yml"), version1.write, polars=True),
     Format("openfast", "OpenFAST (AeroDyn blade)", (".dat",), openfast.write, True, GRID),
     Format("hawc2", "HAWC2", (".htc",), hawc2.write, True, GRID),
     Format("csv", "spanwise table (CSV)", (".csv",), spanwise_table.write),

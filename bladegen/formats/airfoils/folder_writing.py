@@ -6,38 +6,16 @@ its file, its relative thickness, and, for formats that cannot say it, its place
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-from bladegen.definition.blade_definition import Airfoil, Station
+from bladegen.definition.blade_definition import Station
 from bladegen.formats.airfoils.folder_reading import INDEX, INDEX_COLUMNS, companion
+from bladegen.formats.airfoils.unique_names import unique_names
 from bladegen.formats.common.number_text import exact, write_lines
 from bladegen.support.files import folder, safe_stem
 
-__all__ = ["unique_names", "write_airfoils"]
-
-
-def unique_names(stations: Iterable[Station]) -> dict[int, tuple[str, Airfoil]]:
-    """Return a name of its own for each airfoil of a blade, by the airfoil's `id`.
-
-    For tables and sheets, so printable and no formula; `windio.uniquely_named` keeps names as they
-    are, and one name for airfoils that are alike.
-    """
-    named: dict[int, tuple[str, Airfoil]] = {}
-    taken: set[str] = set()
-    for station in stations:
-        airfoil = station.airfoil
-        if id(airfoil) in named:
-            continue
-        printable = "".join(letter if letter.isprintable() else " " for letter in airfoil.name)
-        plain = " ".join(printable.split()).lstrip("=+-@#") or "airfoil"  # no spreadsheet formula
-        name, count = plain, 1
-        while name in taken:
-            count += 1
-            name = f"{plain} ({count})"
-        taken.add(name)
-        named[id(airfoil)] = name, airfoil
-    return named
+__all__ = ["write_airfoils"]
 
 
 def write_airfoils(

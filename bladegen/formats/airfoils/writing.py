@@ -14,8 +14,8 @@ import numpy as np
 from bladegen.airfoils.landmarks import oriented
 from bladegen.definition.blade_definition import Airfoil, BladeDefinition
 from bladegen.errors import ExportError, Finding
+from bladegen.formats.airfoils.unique_names import uniquely_named
 from bladegen.formats.common.number_text import write_lines
-from bladegen.formats.windio.writing import uniquely_named
 from bladegen.support.arguments import instance, one_of, path_of
 from bladegen.support.arrays import Array
 from bladegen.support.files import folder, safe_stem

@@ -1,17 +1,21 @@
-"""Polars of a document's airfoils; what cannot be read is left out, and said.
+"""Polars of a document's airfoils, and what tools ask of a blade's.
 
-A blade's shape does not depend on polars, so nothing that is wrong with them refuses a file.
+A blade's shape does not depend on polars, so nothing that is wrong with them refuses a file: what
+cannot be read is left out, and said.  Files of tools that do not run without are refused.
 """
 
 import math
+from pathlib import Path
 
 import numpy as np
 
 from bladegen.airfoils.polars import Polar
-from bladegen.errors import DefinitionError
+from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.definition.blending import without_polars
+from bladegen.errors import DefinitionError, ExportError
 from bladegen.formats.common.document import Node, Notes, Range
 
-__all__ = ["polars"]
+__all__ = ["polars", "require_polars"]
 
 TURN = 180.0 + 1e-3
 ANGLE = {"deg": Range(-TURN, TURN, "deg"), "rad": Range(-math.pi - 1e-4, math.pi + 1e-4, "rad")}
@@ -19,6 +23,7 @@ COEFFICIENT = Range(-100.0, 100.0)
 REYNOLDS = Range(0.0, 1e10)
 PARAMETER = Range(-1e6, 1e6)
 GIVEN = ("re", "cl", "cd", "cm")
+SHOWN = 4  # airfoils that a message names
 
 
 def polars(airfoil: Node) -> tuple[Polar, ...]:
@@ -87,3 +92,19 @@ def _polar(node: Node, key: str, unit: str, configuration: str, source: str) -> 
         source=source,
         parameters=tuple(parameters),
     )
+
+
+def require_polars(definition: BladeDefinition, path: Path, tool: str) -> None:
+    """Raise unless all airfoils of a blade have polars, without which a tool does not run.
+
+    Raises
+    ------
+    ExportError
+        If some have none.
+    """
+    bare = without_polars(definition)
+    if bare:
+        raise ExportError(
+            f"{path}: {tool} needs polars, {', '.join(bare[:SHOWN])} have none; --polars estimate "
+            "makes some"
+        )

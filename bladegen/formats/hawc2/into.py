@@ -13,8 +13,8 @@ from bladegen.errors import FileError, Finding
 from bladegen.formats.airfoils.folder_reading import PUT_BACK
 from bladegen.formats.common.document import Notes
 from bladegen.formats.common.number_text import line_end, write_lines
+from bladegen.formats.common.polars import require_polars
 from bladegen.formats.common.text_file import read_lines
-from bladegen.formats.common.written_polars import require_polars
 from bladegen.formats.hawc2 import writing as hawc2
 from bladegen.formats.hawc2.reading import AE_SUFFIX, PC_SUFFIX, blade_name
 

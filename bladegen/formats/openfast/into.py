@@ -12,8 +12,8 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import FileError, Finding
 from bladegen.formats.airfoils.folder_reading import PUT_BACK
 from bladegen.formats.common.number_text import line_end, write_lines
+from bladegen.formats.common.polars import require_polars
 from bladegen.formats.common.text_file import read_lines
-from bladegen.formats.common.written_polars import require_polars
 from bladegen.formats.openfast import writing as openfast
 from bladegen.formats.openfast.model import is_main
 

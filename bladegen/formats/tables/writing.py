@@ -16,7 +16,8 @@ import numpy as np
 
 from bladegen.definition.blade_definition import BladeDefinition, Distribution
 from bladegen.errors import Finding
-from bladegen.formats.airfoils.folder_writing import unique_names, write_airfoils
+from bladegen.formats.airfoils.folder_writing import write_airfoils
+from bladegen.formats.airfoils.unique_names import unique_names
 from bladegen.formats.common.number_text import exact, write_lines
 from bladegen.formats.common.resampling import common_grid
 from bladegen.formats.tables.reading import AIRFOIL, FACTS, GEOMETRY

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.definition.blade_definition import Airfoil, BladeDefinition
 from bladegen.errors import FileError, Finding
 from bladegen.formats.common.document import Node, Notes
-from bladegen.formats.windio import reading1 as windio1
-from bladegen.formats.windio import reading2 as windio2
+from bladegen.formats.windio import version1, version2
+from bladegen.formats.windio.writing import Document, Note
 from bladegen.formats.windio.yaml_file import YamlError, load_yaml
 
 __all__ = ["MARK", "SUFFIXES", "VERSIONS", "Version", "read", "recognises"]
@@ -16,17 +16,26 @@ __all__ = ["MARK", "SUFFIXES", "VERSIONS", "Version", "read", "recognises"]
 
 @dataclass(frozen=True)
 class Version:
-    """A layout of YAML documents: what it is, how to tell it, and how to read it."""
+    """A layout of YAML documents: what it is, how to tell it, read it and make it."""
 
     name: str
     mark: str
     recognises: Callable[[object], bool]
     read: Callable[[Node, Path], BladeDefinition | None]
+    document: Callable[[BladeDefinition, Note], Document]
+    polars: Callable[[Airfoil], list[Document]]
 
 
-VERSIONS = (
-    Version("windIO 2", "components.blade.outer_shape", windio2.recognises, windio2.read),
-    Version("windIO 1", "components.blade.outer_shape_bem", windio1.recognises, windio1.read),
+VERSIONS = tuple(
+    Version(
+        f"windIO {module.LAYOUT.version}",
+        f"components.blade.{module.LAYOUT.shape}",
+        module.recognises,
+        module.read,
+        module.document,
+        module.polars,
+    )
+    for module in (version2, version1)
 )
 MARK = " or ".join(f"{version.mark} ({version.name})" for version in VERSIONS)
 SUFFIXES = (".yaml", ".yml", ".json")

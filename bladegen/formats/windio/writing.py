@@ -36,7 +36,6 @@ __all__ = [
     "pairs",
     "thickness",
     "turbine",
-    "uniquely_named",
     "within",
     "write",
 ]
@@ -66,23 +65,6 @@ def thickness(quantity: Distribution, note: Note) -> Distribution:
         return quantity
     note("rthick", f"{quantity.values.max():.6g} is above 1, the most that windIO allows; cut to 1")
     return replace(quantity, values=np.minimum(quantity.values, 1.0))
-
-
-def uniquely_named(stations: Iterable[Station]) -> tuple[Station, ...]:
-    """Return stations whose airfoils differ in name if they differ in shape.
-
-    windIO finds airfoils by name.
-    """
-    known: dict[str, Airfoil] = {}
-    result = []
-    for station in stations:
-        airfoil, count = station.airfoil, 2
-        while airfoil.name in known and not _alike(known[airfoil.name], airfoil):
-            airfoil = replace(airfoil, name=f"{station.airfoil.name}-{count}")
-            count += 1
-        known[airfoil.name] = airfoil
-        result.append(Station(station.eta, airfoil))
-    return tuple(result)
 
 
 def airfoil_entries(
@@ -228,11 +210,3 @@ def dump(document: Document, path: Path, title: str) -> None:
             width=LINE,
             allow_unicode=True,
         )
-
-
-def _alike(one: Airfoil, other: Airfoil) -> bool:
-    return (
-        one.relative_thickness == other.relative_thickness
-        and np.array_equal(one.coordinates, other.coordinates)
-        and one.polars is other.polars
-    )

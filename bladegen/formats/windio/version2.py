@@ -1,5 +1,6 @@
-"""windIO 2: angles in degrees, the distance from leading edge to axis in metres."""
+"""windIO 2, read and written: angles in degrees, leading edge to axis in metres."""
 
+import math
 from dataclasses import replace
 from functools import partial
 
@@ -14,21 +15,51 @@ from bladegen.definition.blade_definition import (
     united,
 )
 from bladegen.definition.thickness import ruled
+from bladegen.formats.airfoils.unique_names import uniquely_named
+from bladegen.formats.common.document import FRACTION, Node, Range
 from bladegen.formats.common.redefinition import missed, sampled
-from bladegen.formats.windio import writing as windio
+from bladegen.formats.windio import reading, writing
+from bladegen.formats.windio.reading import Entry, Layout
 from bladegen.formats.windio.writing import Document, Note
 
-__all__ = ["blade", "document", "polars", "write"]
+__all__ = ["LAYOUT", "blade", "document", "polars", "read", "recognises", "write"]
 
 DEGREES = 180.0 / np.pi
 DIGITS = 12  # of angles in degrees, so that those of a file in degrees come back
 NOT_HELD = frozenset({"b5"})  # of AeroDyn's constants for unsteady aerodynamics
 
 
+def schedule(shape: Node) -> list[Entry]:
+    """Read `airfoils`: names, with or without their position over span."""
+    entries = []
+    for item in shape["airfoils"].members():
+        name, eta = item["name"].text(), None
+        if item.has("spanwise_position"):
+            eta = item["spanwise_position"].number(FRACTION)
+        if name is not None:
+            entries.append(Entry(name, eta, item))
+    return entries
+
+
+LAYOUT = Layout(
+    version="2",
+    shape="outer_shape",
+    offset="section_offset_y",
+    thickness="rthick",
+    axis=("reference_axis",),
+    schedule=schedule,
+    tilt=(("components", "drivetrain", "outer_shape", "uptilt"),),
+    angle=math.pi / 180.0,
+    turn=Range(-90.0, 90.0, "deg"),
+)
+recognises = partial(reading.recognises, layout=LAYOUT)
+read = partial(reading.read, layout=LAYOUT)
+
+
 def document(definition: BladeDefinition, note: Note) -> Document:
     """Return a turbine document that holds what a definition says."""
-    definition = windio.within(definition, note)
-    stations = windio.uniquely_named(definition.stations)
+    definition = writing.within(definition, note)
+    stations = uniquely_named(definition.stations)
     rotor = definition.rotor
     components: Document = {"blade": blade(replace(definition, stations=stations), note)}
     hub = _hub(rotor, note)
@@ -36,8 +67,8 @@ def document(definition: BladeDefinition, note: Note) -> Document:
         components["hub"] = hub
     if rotor.tilt is not None:
         components["drivetrain"] = {"outer_shape": {"uptilt": DEGREES * rotor.tilt}}
-    entries = windio.airfoil_entries(stations, "rthick", polars)
-    return windio.turbine(definition, "2.0", components, entries)
+    entries = writing.airfoil_entries(stations, "rthick", polars)
+    return writing.turbine(definition, "2.0", components, entries)
 
 
 def _hub(rotor: Rotor, note: Note) -> Document:
@@ -64,14 +95,14 @@ def blade(definition: BladeDefinition, note: Note) -> Document:
     assert thickness is not None  # it rules
     shape: Document = {
         "airfoils": [_scheduled(station) for station in definition.stations],
-        "chord": windio.pairs(definition.chord),
-        "twist": windio.pairs(definition.twist, DEGREES),
-        "section_offset_y": windio.pairs(_offset(definition, note)),
-        "rthick": windio.pairs(windio.thickness(thickness, note)),
+        "chord": writing.pairs(definition.chord),
+        "twist": writing.pairs(definition.twist, DEGREES),
+        "section_offset_y": writing.pairs(_offset(definition, note)),
+        "rthick": writing.pairs(writing.thickness(thickness, note)),
     }
     if definition.section_offset_x is not None:
-        shape["section_offset_x"] = windio.pairs(definition.section_offset_x)
-    return {"reference_axis": windio.axis(definition), "outer_shape": shape}
+        shape["section_offset_x"] = writing.pairs(definition.section_offset_x)
+    return {"reference_axis": writing.axis(definition), "outer_shape": shape}
 
 
 def polars(airfoil: Airfoil) -> list[Document]:
@@ -80,7 +111,7 @@ def polars(airfoil: Airfoil) -> list[Document]:
     for polar in airfoil.polars:
         row: Document = {"re": polar.reynolds or 0.0}
         for key in ("cl", "cd", "cm"):
-            row[key] = windio.curve(np.degrees(polar.alpha).round(DIGITS), getattr(polar, key))
+            row[key] = writing.curve(np.degrees(polar.alpha).round(DIGITS), getattr(polar, key))
         row |= {name: value for name, value in polar.parameters if name not in NOT_HELD}
         sets.setdefault((polar.configuration, polar.source), []).append(row)
     return [
@@ -103,7 +134,7 @@ def _offset(definition: BladeDefinition, note: Note) -> Distribution:
         return definition.section_offset_y
     assert definition.pitch_axis is not None  # a definition has one of both
     grid = united(definition.pitch_axis.grid, definition.chord.grid)
-    made = sampled(definition.offset_y, grid, windio.OFFSET)
+    made = sampled(definition.offset_y, grid, writing.OFFSET)
     off = missed(made, definition.offset_y)
     note(
         "section_offset_y",
@@ -112,4 +143,4 @@ def _offset(definition: BladeDefinition, note: Note) -> Distribution:
     return made
 
 
-write = partial(windio.write, version="2", document=document)
+write = partial(writing.write, version="2", document=document)

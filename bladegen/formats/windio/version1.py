@@ -1,23 +1,62 @@
-"""windIO 1: angles in radians, the pitch axis as a fraction of the chord."""
+"""windIO 1, read and written: angles in radians, the pitch axis as a fraction of the chord."""
 
+import math
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distribution, united
+from bladegen.formats.airfoils.unique_names import uniquely_named
+from bladegen.formats.common.document import Node, Range
 from bladegen.formats.common.redefinition import missed, sampled
-from bladegen.formats.windio import writing as windio
+from bladegen.formats.windio import reading, writing
+from bladegen.formats.windio.reading import Entry, Layout
 from bladegen.formats.windio.writing import Document, Note
 from bladegen.support.arrays import Array
 
-__all__ = ["document", "outer_shape", "polars", "write"]
+__all__ = ["LAYOUT", "document", "outer_shape", "polars", "read", "recognises", "write"]
+
+
+def schedule(shape: Node) -> list[Entry]:
+    """Read `airfoil_position`: a grid and the labels of the airfoils on it."""
+    position = shape["airfoil_position"]
+    grid, labels = position["grid"].span_fractions(), position["labels"].members()
+    names = [label.text() for label in labels]
+    if grid is not None and labels and len(grid) != len(labels):
+        position.problem(f"grid has {len(grid)} entries and labels {len(labels)}, must be alike")
+        return []
+    etas = [None] * len(labels) if grid is None else grid.tolist()
+    return [
+        Entry(name, eta, label)
+        for name, eta, label in zip(names, etas, labels, strict=False)
+        if name is not None
+    ]
+
+
+LAYOUT = Layout(
+    version="1",
+    shape="outer_shape_bem",
+    offset="pitch_axis",
+    thickness="relative_thickness",
+    axis=("outer_shape_bem", "reference_axis"),
+    schedule=schedule,
+    tilt=tuple(
+        ("components", "nacelle", part, name)
+        for part in ("drivetrain", "outer_shape_bem")
+        for name in ("uptilt", "uptilt_angle")
+    ),
+    angle=1.0,
+    turn=Range(-math.pi / 2, math.pi / 2, "rad"),
+)
+recognises = partial(reading.recognises, layout=LAYOUT)
+read = partial(reading.read, layout=LAYOUT)
 
 
 def document(definition: BladeDefinition, note: Note) -> Document:
     """Return a turbine document that holds what a definition says."""
-    definition = windio.within(definition, note)
-    stations = windio.uniquely_named(definition.stations)
+    definition = writing.within(definition, note)
+    stations = uniquely_named(definition.stations)
     rotor = definition.rotor
     named = replace(definition, stations=stations)
     components: Document = {"blade": {"outer_shape_bem": outer_shape(named, note)}}
@@ -32,8 +71,8 @@ def document(definition: BladeDefinition, note: Note) -> Document:
         components["hub"] = hub
     if rotor.tilt is not None:
         components["nacelle"] = {"drivetrain": {"uptilt": rotor.tilt}}
-    entries = windio.airfoil_entries(stations, "relative_thickness", polars)
-    return windio.turbine(definition, "1.0", components, entries)
+    entries = writing.airfoil_entries(stations, "relative_thickness", polars)
+    return writing.turbine(definition, "1.0", components, entries)
 
 
 def outer_shape(definition: BladeDefinition, note: Note) -> Document:
@@ -49,13 +88,13 @@ def outer_shape(definition: BladeDefinition, note: Note) -> Document:
             "grid": [station.eta for station in definition.stations],
             "labels": [station.airfoil.name for station in definition.stations],
         },
-        "chord": windio.pairs(definition.chord),
-        "twist": windio.pairs(definition.twist),
-        "pitch_axis": windio.pairs(_pitch_axis(definition, note)),
-        "reference_axis": windio.axis(definition),
+        "chord": writing.pairs(definition.chord),
+        "twist": writing.pairs(definition.twist),
+        "pitch_axis": writing.pairs(_pitch_axis(definition, note)),
+        "reference_axis": writing.axis(definition),
     }
     if definition.relative_thickness is not None:
-        shape["rthick"] = windio.pairs(windio.thickness(definition.relative_thickness, note))
+        shape["rthick"] = writing.pairs(writing.thickness(definition.relative_thickness, note))
     return shape
 
 
@@ -66,7 +105,7 @@ def polars(airfoil: Airfoil) -> list[Document]:
             "configuration": polar.configuration,
             **({"description": polar.source} if polar.source else {}),
             "re": polar.reynolds or 0.0,
-            **{f"c_{x}": windio.curve(polar.alpha, getattr(polar, f"c{x}")) for x in "ldm"},
+            **{f"c_{x}": writing.curve(polar.alpha, getattr(polar, f"c{x}")) for x in "ldm"},
         }
         for polar in airfoil.polars
     ]
@@ -81,7 +120,7 @@ def _pitch_axis(definition: BladeDefinition, note: Note) -> Distribution:
     def fraction(eta: Array) -> Array:
         return definition.offset_y(eta) / definition.chord(eta)
 
-    made = sampled(fraction, grid, windio.OFFSET / float(definition.chord.values.max()))
+    made = sampled(fraction, grid, writing.OFFSET / float(definition.chord.values.max()))
     note(
         "pitch_axis",
         f"section_offset_y over chord at {len(made.grid)} points, within "
@@ -90,4 +129,4 @@ def _pitch_axis(definition: BladeDefinition, note: Note) -> Distribution:
     return made
 
 
-write = partial(windio.write, version="1", document=document)
+write = partial(writing.write, version="1", document=document)

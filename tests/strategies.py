@@ -1,5 +1,8 @@
 """Hypothesis strategies: points and tangents of Gr(n, 2), rotations, airfoils, definitions."""
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
@@ -11,6 +14,7 @@ from bladegen.definition.blade_definition import (
     ReferenceAxis,
     Station,
 )
+from bladegen.formats.reading import read
 from bladegen.shapes import grassmann
 from bladegen.support.arrays import Array, readonly
 
@@ -164,4 +168,28 @@ def definitions(draw: st.DrawFn, *, thickness: bool | None = None) -> BladeDefin
         axis=axis,
         pitch_axis=over(0.5, 0.35, 0.3),
         relative_thickness=distribution if with_thickness else None,
+    )
+
+
+@cache
+def tenth(name: str = "nrel5mw") -> BladeDefinition:
+    """A bundled blade at a tenth of its size, all quantities on the grid of its stations.
+
+    Its airfoils and their names are those of the whole blade; OpenFAST's files of it have 20
+    nodes, not a hundred.
+    """
+    whole = read(name)
+    grid = np.array([station.eta for station in whole.stations])
+
+    def on(quantity: Distribution, factor: float = 0.1) -> Distribution:
+        return Distribution(grid, factor * quantity(grid))
+
+    thickness, behind = whole.relative_thickness, whole.section_offset_y
+    return replace(
+        whole,
+        chord=on(whole.chord),
+        twist=on(whole.twist, 1.0),
+        axis=ReferenceAxis(on(whole.axis.x), on(whole.axis.y), on(whole.axis.z)),
+        relative_thickness=None if thickness is None else on(thickness, 1.0),
+        section_offset_y=None if behind is None else on(behind),
     )

@@ -86,7 +86,10 @@ def test_a_bend_that_lies_elsewhere_is_no_other_bend():
     assert inflections(replace(blade, edge_width=moved)) == []
 
 
-@pytest.mark.parametrize("name", bg.bundled())
+@pytest.mark.parametrize(
+    "name",
+    ["iea15mw", *(pytest.param(n, marks=pytest.mark.nightly) for n in ("dtu10mw", "nrel5mw"))],
+)
 def test_a_converted_copy_has_no_inflection_that_its_source_has_not(name, tmp_path):
     """OpenFAST's files have a station at every node; the sources have no inflection."""
     writing.write(bg.read(name), tmp_path / "copy.dat", format="openfast")

@@ -24,7 +24,7 @@ from bladegen.formats.hawc2.polar_reading import profile_sets as read_sets
 from bladegen.formats.into import write_into
 from bladegen.formats.openfast.polar_reading import Columns
 from bladegen.formats.openfast.polar_reading import polars as read_tables
-from strategies import few, naca
+from strategies import few, naca, tenth
 
 ALPHA = np.radians(np.arange(-180.0, 181.0, 20.0))
 
@@ -36,9 +36,9 @@ def polar(lift: float = 1.0, **changes) -> Polar:
 
 
 @cache
-def with_polars(*reynolds: float | None, name: str = "nrel5mw", **changes: Any) -> BladeDefinition:
-    """A bundled blade, the lift of its airfoils growing from root to tip."""
-    plain = bg.read(name)
+def with_polars(*reynolds: float | None, whole: bool = False, **changes: Any) -> BladeDefinition:
+    """A bundled blade, small or `whole`, the lift of its airfoils growing from root to tip."""
+    plain = bg.read("nrel5mw") if whole else tenth()
     made: dict[str, Airfoil] = {}
     for k, station in enumerate(plain.stations):
         own = tuple(polar(1.0 + 0.1 * k, reynolds=re, **changes) for re in reynolds)
@@ -169,10 +169,10 @@ def test_published_polars_bring_their_reference_point(tmp_path):
     centres = {station.airfoil.aerodynamic_center for station in blade.stations}
     assert centres == {0.5, 0.275}
     bg.write(blade, tmp_path / "own.dat")
-    said = (tmp_path / "own_dat_airfoils" / "own_AF100_Coords.txt").read_text().splitlines()
+    said = (tmp_path / "own_dat_airfoils" / "own_AF019_Coords.txt").read_text().splitlines()
     assert float(said[3].split()[0]) == 0.275
     bg.write(with_polars(4e6, source="estimate: x"), tmp_path / "made.dat")
-    said = (tmp_path / "made_dat_airfoils" / "made_AF100_Coords.txt").read_text().splitlines()
+    said = (tmp_path / "made_dat_airfoils" / "made_AF019_Coords.txt").read_text().splitlines()
     assert float(said[3].split()[0]) == 0.25
 
 
@@ -192,7 +192,7 @@ def test_an_unknown_reynolds_number_stays_unknown(tmp_path):
     assert "! reynolds: unknown" in text
     assert bg.read(tmp_path / "blade.dat").stations[0].airfoil.polars[0].reynolds is None
     first, other = polar(configuration="clean"), polar(2.0, configuration="rough")
-    plain = bg.read("nrel5mw")
+    plain = tenth()
     two = tuple(Station(s.eta, replace(s.airfoil, polars=(first, other))) for s in plain.stations)
     said = bg.write(replace(plain, stations=two), tmp_path / "blade.dat")
     assert "of the first configuration alone: Cylinder1, " in " ".join(map(str, said))
@@ -208,7 +208,7 @@ def test_polars_that_go_leave_no_files_behind(tmp_path):
     left = {path.name for path in tmp_path.rglob("*") if path.is_file()}
     assert not left & {"blade_AeroDyn_part.dat", "blade_AF001.dat", "blade_pc.dat"}
     assert not any(s.airfoil.polars for s in bg.read(tmp_path / "blade.dat").stations)
-    some = replace(blade, stations=(bg.read("nrel5mw").stations[0], *blade.stations[1:]))
+    some = replace(blade, stations=(tenth().stations[0], *blade.stations[1:]))
     for suffix in ("dat", "htc"):
         said = " ".join(map(str, bg.write(some, tmp_path / f"blade.{suffix}")))
         assert "polars are not written: Cylinder1 have none" in said
@@ -276,7 +276,7 @@ def model(tmp_path_factory) -> Path:
         part = part.replace(name, f'"../Shared/{name[1:]}')
     (folder / "Land" / "AeroDyn.dat").write_text(part)
     (folder / "Land" / "ElastoDyn.dat").write_text(
-        "2 NumBl - blades\n63.0 TipRad - m\n1.5 HubRad - m\n-2.5 PreCone(1) - deg\n"
+        "2 NumBl - blades\n7.65 TipRad - m\n1.5 HubRad - m\n-2.5 PreCone(1) - deg\n"
         "-5.0 ShftTilt - deg\n"
     )
     (folder / "Land" / "turbine.fst").write_text(
@@ -296,7 +296,7 @@ def turbine(model, tmp_path) -> Path:
 def test_a_turbine_file_leads_to_its_blade(turbine):
     made = bg.read(turbine)
     assert (made.name, made.format) == ("turbine", "OpenFAST")
-    assert (made.rotor.blades, made.rotor.hub_radius, made.rotor.diameter) == (2, 1.5, 126.0)
+    assert (made.rotor.blades, made.rotor.hub_radius, made.rotor.diameter) == (2, 1.5, 15.3)
     assert made.rotor.cone == pytest.approx(np.radians(2.5))
     assert made.rotor.tilt == pytest.approx(np.radians(5.0))
     assert lift(made, 0.5) == pytest.approx(lift(with_polars(4e6), 0.5), abs=0.01)
@@ -333,7 +333,7 @@ def test_turbine_files_lead_nowhere_else(tmp_path, turbine, file, old, new, said
     ("file", "old", "new", "said"),
     [
         ("turbine.fst", "ElastoDyn.dat", "../../x.dat", "EDFile: '../../x.dat' is no file in "),
-        ("ElastoDyn.dat", "63.0 TipRad", "73.0 TipRad", "TipRad, HubRad: of ElastoDyn are 71.5 m"),
+        ("ElastoDyn.dat", "7.65 TipRad", "9.65 TipRad", "TipRad, HubRad: of ElastoDyn are 8.15 m"),
         ("ElastoDyn.dat", "1.5 HubRad", "-1 HubRad", "EDFile, HubRad: got '-1', allowed is 0 to"),
         ("ElastoDyn.dat", "-5.0 ShftTilt", "-5.0 Tilt", "EDFile, ShftTilt: is missing; passed"),
     ],
@@ -349,10 +349,10 @@ def test_an_empty_blade_file_is_refused(turbine):
 
 
 def test_chords_of_all_but_nothing_are_refused(tmp_path):
-    bg.write(bg.read("nrel5mw"), tmp_path / "blade.dat")
+    bg.write(tenth(), tmp_path / "blade.dat")
     (tmp_path / "blade_ElastoDyn_twist.dat").unlink()
     lines = (tmp_path / "blade.dat").read_text().splitlines()
-    chord = lines[40].split()[5]
+    chord = lines[15].split()[5]
     edit(tmp_path / "blade.dat", chord, "5e-324")
     assert "chord must be positive, at least" in problems(tmp_path / "blade.dat")
 
@@ -372,7 +372,7 @@ def test_a_blade_goes_back_into_a_model(turbine):
     main.write_bytes(main.read_bytes().replace(b"\n", b"\r\n").replace(b"- kept", b"- kept \xb0"))
     changed = with_polars(4e6, 8e6)
     source = turbine.with_name("variant.yaml")
-    bg.write(replace(changed, chord=Distribution.constant(2.0)), source)
+    bg.write(replace(changed, chord=Distribution.constant(0.2)), source)
     result = run(commands.app, ["convert", str(source), str(main), "--into", str(main)])
     assert result.exit_code == 0, result.output
     assert "structure" in result.output
@@ -383,7 +383,7 @@ def test_a_blade_goes_back_into_a_model(turbine):
     assert "2                       AFTabMod" in text
     assert "../shared" not in text.lower()
     made = bg.read(turbine)
-    assert made.chord(0.5) == pytest.approx(2.0)
+    assert made.chord(0.5) == pytest.approx(0.2)
     assert lift(made, 0.5) == pytest.approx(lift(changed, 0.5), abs=0.01)
     assert made.rotor.hub_radius == 1.5
     said = write_into(changed, main, turbine.parent.parent / "new.dat")
@@ -397,7 +397,7 @@ def test_what_no_blade_goes_into_is_refused(turbine):
     main = turbine.with_name("AeroDyn.dat")
     before = main.read_text()
     with pytest.raises(bg.BladegenError, match="needs polars, Cylinder1, Cylinder2"):
-        write_into(bg.read("nrel5mw"), main, main)
+        write_into(tenth(), main, main)
     assert main.read_text() == before
 
 
@@ -443,7 +443,7 @@ def hawc2_lift(folder: Path, eta: float, alpha: float = 20.0) -> float:
 
 
 def test_hawc2_finds_the_polars_that_the_blade_has(tmp_path):
-    blade = with_polars(4e6)
+    blade = with_polars(4e6, whole=True)
     bg.write(blade, tmp_path / "blade.htc")
     assert "pc_filename ./blade_pc.dat ;" in (tmp_path / "blade.htc").read_text()
     for eta in np.linspace(0.03, 1.0, 30):
@@ -480,7 +480,7 @@ def test_polars_come_back_from_hawc2(tmp_path):
 def test_thickness_may_turn_and_stay(tmp_path_factory, thicknesses):
     """Whatever the thickness does, each station gets its own polar."""
     folder = tmp_path_factory.mktemp("pc")
-    plain = bg.read("nrel5mw")
+    plain = tenth()
     grid = np.linspace(0.0, 1.0, len(thicknesses))
     airfoils = [
         Airfoil(f"foil {k}", naca(0.2, 0.0, 0.0), 0.2, (polar(1.0 + k, reynolds=4e6),))
@@ -503,7 +503,7 @@ def test_thickness_may_turn_and_stay(tmp_path_factory, thicknesses):
 
 def test_moments_go_about_the_quarter_chord(tmp_path):
     """A cylinder's drag acts at half chord: about the quarter chord it has a moment."""
-    plain = bg.read("nrel5mw")
+    plain = tenth()
     ends = np.radians([-180.0, 180.0])
     drag = Polar(ends, np.zeros(2), np.full(2, 0.5), np.zeros(2), reynolds=1e6)
     stations = tuple(
@@ -641,7 +641,7 @@ def test_a_blade_goes_back_into_an_htc_file(tmp_path):
         *("turbine.htc", "turbine_blade_ae.dat", "turbine_blade_pc.dat", folder.name)
     }
     with pytest.raises(bg.BladegenError, match="HAWC2 needs polars, Cylinder1, Cylinder2"):
-        write_into(bg.read("nrel5mw"), path, path)
+        write_into(tenth(), path, path)
     path.write_text("begin aero ;\nend aero ;\n")
     with pytest.raises(bg.BladegenError, match="no blade with c2_def"):
         write_into(changed, path, path)
@@ -660,15 +660,17 @@ def test_a_blade_goes_back_into_an_htc_file(tmp_path):
 def test_the_option_polars_rules_openfast_and_hawc2(tmp_path, monkeypatch):
     pytest.importorskip("neuralfoil")
     monkeypatch.setattr("bladegen.definition.estimates.MODEL", "xxsmall")  # quick
-    run = CliRunner().invoke
+    run, source = CliRunner().invoke, str(tmp_path / "plain.csv")
+    plain = tenth()
+    bg.write(replace(plain, stations=(plain.stations[2], plain.stations[-1])), source)
     for suffix in ("dat", "htc"):
         target = str(tmp_path / f"blade.{suffix}")
-        result = run(commands.app, ["convert", "nrel5mw", target, "--polars", "estimate"])
+        result = run(commands.app, ["convert", source, target, "--polars", "estimate"])
         assert result.exit_code == 0, result.output
         said = " ".join(result.output.split())
         assert ("blade_AeroDyn_part.dat" if suffix == "dat" else "sets in blade_pc.dat") in said
         made = bg.read(target)
         assert all(s.airfoil.polars[0].is_estimate for s in made.stations)
-        result = run(commands.app, ["convert", "nrel5mw", target, "--polars", "keep"])
+        result = run(commands.app, ["convert", source, target, "--polars", "keep"])
         assert "polars are not written: there are none" in " ".join(result.output.split())
         assert not any(s.airfoil.polars for s in bg.read(target).stations)

@@ -12,6 +12,7 @@ import bladegen as bg
 from bladegen.errors import FileError
 from bladegen.formats.common import text_file
 from bladegen.formats.hawc2.model import finder
+from strategies import tenth
 
 
 def edit(path: Path, old: str, new: str, count: int = 1) -> Path:
@@ -105,7 +106,7 @@ def test_nodes_that_share_an_airfoil_keep_its_ends(tmp_path):
 
 def test_a_twist_table_of_another_blade_is_passed_over(tmp_path):
     path = tmp_path / "blade.dat"
-    bg.write(bg.read("nrel5mw"), path)
+    bg.write(tenth(), path)
     assert "no reference axis" not in findings(bg.read(path))
     table = tmp_path / "blade_ElastoDyn_twist.dat"
     table.write_text("\n".join(table.read_text().splitlines()[:-1]))
@@ -310,7 +311,7 @@ WORDS = ["", "-1", "nan", "inf", "1e400", "word", "begin", "end", ";", "\0", '"'
 def test_damaged_files_are_refused_with_a_line_of_their_own(tmp_path, format_):
     rng = np.random.default_rng(11)
     made = tmp_path / f"blade.{'csv' if format_ == 'index' else format_}"
-    bg.write(bg.read("nrel5mw"), made)
+    bg.write(tenth(), made)
     damaged = made if format_ != "index" else tmp_path / "blade_csv_airfoils" / "index.csv"
     lines = damaged.read_text().splitlines()
     refused: list[str] = []

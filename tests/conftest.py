@@ -12,6 +12,8 @@ import pytest
 import zygote
 from hypothesis import settings
 
+from bladegen.measures import foreign, foreign_reader
+
 settings.register_profile("steady", deadline=None, max_examples=15, derandomize=True)
 settings.register_profile("thorough", deadline=None, max_examples=100, derandomize=True)
 settings.register_profile("explore", deadline=None, max_examples=200, print_blob=True)
@@ -23,6 +25,27 @@ def command():
     """Run bladegen's commands, and scripts, in processes that have imported what is slow."""
     with zygote.Commands() as commands:
         yield commands
+
+
+class Answered:
+    """What stands for the child that reads a foreign file, and has answered already."""
+
+    def __init__(self, words):
+        question, path, *_ = words
+        self.sent = foreign.packed(foreign_reader.answer(question, Path(path)))
+
+    def kill(self):
+        pass
+
+    def wait(self):
+        return 0
+
+
+@pytest.fixture
+def foreign_here(monkeypatch):
+    """Read foreign files in this process: that they have one of their own tells test_foreign."""
+    monkeypatch.setattr(foreign, "started", Answered)
+    monkeypatch.setattr(foreign, "_sent", lambda child, _: child.sent)
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -11,6 +11,8 @@ from bladegen.errors import BladegenError, FileError
 from bladegen.measures import checks
 from bladegen.surface import mesh
 
+pytestmark = pytest.mark.usefixtures("foreign_here")
+
 
 @pytest.fixture(scope="module")
 def blade():

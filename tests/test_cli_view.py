@@ -10,6 +10,8 @@ from bladegen.cli.view import What
 from bladegen.errors import BladegenError
 from bladegen.views import keys, preview, sweep
 
+pytestmark = pytest.mark.usefixtures("foreign_here")
+
 
 def run(*words):
     return CliRunner().invoke(commands.app, [str(word) for word in words])

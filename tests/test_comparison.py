@@ -15,6 +15,8 @@ from bladegen.surface import mesh
 from bladegen.surface.mesh import TriangleMesh
 from bladegen.views.comparison import Side, compared, surface_of
 
+pytestmark = pytest.mark.usefixtures("foreign_here")
+
 
 @pytest.fixture(scope="module")
 def blade():

@@ -89,8 +89,15 @@ def test_a_finer_tolerance_takes_more_sections_and_gives_less_deviation():
     assert len(fixed.v) == 50
 
 
-@pytest.mark.parametrize("path", ["geodesic", "spline"])
-@pytest.mark.parametrize("name", bundled())
+def along(name, path):
+    """A case; one blade's of either path is quick."""
+    slow = (name, path) not in (("dtu10mw", "geodesic"), ("iea15mw", "spline"))
+    return pytest.param(name, path, marks=[pytest.mark.nightly] * slow)
+
+
+@pytest.mark.parametrize(
+    ("name", "path"), [along(n, p) for n in bundled() for p in ("geodesic", "spline")]
+)
 def test_hundredths_of_a_millimetre_are_reached(name, path):
     blade = Blade.from_definition(read(name), path=path)
     surface, measured = fitted(blade, 5e-5)

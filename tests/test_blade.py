@@ -1,3 +1,4 @@
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -10,10 +11,12 @@ from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven
+from bladegen.blade.planform import normal_to_z
 from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import DefinitionError
 from bladegen.formats.reading import bundled, read
 from bladegen.shapes import affine
+from bladegen.shapes.shape_space import ShapeSpace
 from strategies import SEEDS, definitions, few
 
 N = 101
@@ -191,3 +194,51 @@ def test_wrong_values_are_refused():
             blade.sections([0.5, bad])
     with pytest.raises(DefinitionError, match="at least 9 are needed"):
         blade.stations(8)
+
+
+def test_a_variant_shares_what_its_perturbation_does_not_touch():
+    blade = Blade.from_definition(read("dtu10mw"), landmarks=N)
+    space = ShapeSpace.bundled()
+    sections, frames = blade.sections(SPANS), blade.planform.frames
+    deformed = blade.perturbed(space, [0.01, 0.0, 0.0, 0.0], thickness=1.02, name="other")
+    assert deformed.shape is not blade.shape
+    assert deformed.shape.loft is blade.shape.loft
+    assert deformed.planform.frames is frames
+    wider = blade.perturbed(chord=1.1)
+    assert wider.shape.loft is blade.shape.loft
+    assert wider.planform.frames is frames
+    bent = blade.perturbed(prebend_scale=2.0)
+    assert bent.planform.frames is not frames
+    assert bent.shape is blade.shape
+    assert blade.mirror_image().planform is blade.planform
+    assert np.array_equal(blade.sections(SPANS), sections)
+
+
+def test_parts_of_a_blade_are_changed_by_name_and_one_thickness_rules():
+    blade = Blade.from_definition(read("dtu10mw"), landmarks=N)
+    bare = replace(blade, edge_width=None)
+    assert bare.shape.loft.edge_width is None
+    assert bare.planform is blade.planform
+    flat = replace(blade, planes=normal_to_z)
+    assert flat.planes is normal_to_z
+    assert flat.shape is blade.shape
+    definition = replace(blade.definition, relative_thickness=None)
+    free = replace(blade, definition=definition)
+    assert free.definition is definition
+    assert free.shape.loft.relative_thickness is None
+    assert free.wanted_thickness(SPANS) is None
+    with pytest.raises(TypeError, match="unexpected keyword argument 'edge'"):
+        replace(blade, edge=None)
+
+
+def test_pickles_hold_no_caches():
+    blade = Blade.from_definition(read("dtu10mw"), landmarks=N)
+    before = pickle.dumps(blade)
+    sections = blade.sections(SPANS)
+    blade.stations()
+    assert len(pickle.dumps(blade)) < len(before) + 20_000  # splines of distributions alone
+    again = pickle.loads(before)
+    assert np.array_equal(again.sections(SPANS), sections)
+    assert not {"splines", "parameter", "_joined", "_widths"} & set(
+        vars(pickle.loads(before).shape.loft)
+    )

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen.airfoils.crossing import crossing_sections
 from bladegen.blade.deformation import AffineChange
-from bladegen.blade.perturbation import SOUND_SPANS
+from bladegen.blade.soundness import SOUND_SPANS
 from bladegen.errors import PerturbationError
 from bladegen.shapes import affine, grassmann
 from strategies import definitions, few
@@ -226,8 +226,8 @@ def test_a_blade_as_it_is_defined_is_sound(blades):
 
 
 def test_deformations_that_eat_the_thickness_are_named(blades, monkeypatch):
-    monkeypatch.setattr("bladegen.blade.perturbation.LOST_THICKNESS", 1.5)
-    monkeypatch.setattr("bladegen.blade.perturbation.crossing_sections", lambda _: [])
+    monkeypatch.setattr("bladegen.blade.soundness.LOST_THICKNESS", 1.5)
+    monkeypatch.setattr("bladegen.blade.soundness.crossing_sections", lambda _: [])
     with pytest.raises(PerturbationError, match="loses its thickness with pga"):
         blades["nrel5mw"].perturbed(
             SPACE, -np.array([0.1, 0.1, 0.0, 0.0]), allow_extrapolation=True

@@ -1,13 +1,17 @@
 """Where along the span a surface bends, and how to spread sections so that they resolve it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from bladegen.errors import DefinitionError
 from bladegen.support.arrays import Array
 
 __all__ = ["Crowding"]
 
+RESOLVING_SPANS = 1001  # spans at which bends are looked for
+RESOLVING_LANDMARKS = 40  # landmarks that are watched for bends, about
 EVEN_SHARE = 0.35  # of the sections: spread evenly, so that no part of the span is left bare
 ROUNDING = 1e-12  # of the blade's size; second differences below are no bends
 DECIMALS = 9  # of spans: sums differ in their last digits with the number of threads
@@ -56,8 +60,26 @@ class Crowding:
         steps = 0.5 * (even[1:] + even[:-1])
         return cls(grid, np.concatenate([[0.0], np.cumsum(steps)]))
 
+    @classmethod
+    def along(cls, sections: Callable[[Array], Array], landmarks: int) -> "Crowding":
+        """Measure a blade by its sections (k, landmarks, 3) as a function of span."""
+        grid = np.linspace(0.0, 1.0, RESOLVING_SPANS)
+        some = slice(None, None, max(1, landmarks // RESOLVING_LANDMARKS))
+        return cls.of(grid, sections(grid)[:, some])
+
     def spans(self, fixed: Array, count: int) -> Array:
-        """Return `count` increasing span fractions, `fixed` (increasing) among them."""
+        """Return `count` increasing span fractions, `fixed` (increasing) among them.
+
+        Raises
+        ------
+        DefinitionError
+            If `count` is too small to hold the fixed ones.
+        """
+        if count < len(fixed):
+            raise DefinitionError(
+                f"stations: got {count}, at least {len(fixed)} are needed: root, tip and the "
+                "definition's own"
+            )
         marks = np.interp(fixed, self.grid, self.total)
         share = np.diff(marks) / (marks[-1] - marks[0]) * (count - len(fixed))
         inner = np.floor(share).astype(int)

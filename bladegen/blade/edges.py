@@ -18,7 +18,7 @@ import numpy as np
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array
 
-__all__ = ["AsGiven", "MinimumThickness", "Sharp", "TrailingEdge"]
+__all__ = ["MINIMUM_EDGE", "AsGiven", "MinimumThickness", "Sharp", "TrailingEdge"]
 
 WINDOW = (0.5, 0.8)  # of chord: nothing moves ahead of the first, all moves behind the second
 LEAST_WEDGE = 0.25  # of the edge's height: what a closed edge keeps at the window's end
@@ -105,6 +105,9 @@ class MinimumThickness:
         result = profiles.copy()
         result[thin] = _joined(profiles[thin], half, middle)
         return result
+
+
+MINIMUM_EDGE = MinimumThickness(0.002, most=0.01)  # what trailing edges are by default
 
 
 @dataclass(frozen=True)

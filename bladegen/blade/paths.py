@@ -18,7 +18,7 @@ from bladegen.definition.blade_definition import Distribution, Interpolant, pchi
 from bladegen.shapes import affine, grassmann
 from bladegen.support.arrays import Array, Mask
 
-__all__ = ["GeodesicPath", "Parameter", "Path", "SectionSpline", "SplinePath"]
+__all__ = ["PATHS", "GeodesicPath", "Parameter", "Path", "SectionSpline", "SplinePath"]
 
 EQUAL_THICKNESS = 1e-3  # of chord; neighbours closer than this are told apart by span instead
 STEEP = 0.05  # of chord over a whole span; nearer neighbours follow thickness too where it
@@ -220,6 +220,9 @@ def spline_path(knots: Array, X: Array, M: Array) -> tuple[Path, Array]:
     mean = grassmann.align(X[-1], grassmann.karcher_mean(X))  # no mirrored bases
     aligned = grassmann.align(mean[None], X)
     return SplinePath(knots, aligned, mean), aligned.mT @ X @ M
+
+
+PATHS: dict[str, PathMaker] = {"geodesic": geodesic_path, "spline": spline_path}
 
 
 def _slopes(knots: Array, V: Array) -> Array:

@@ -13,13 +13,17 @@ reference axis: no roll is added (Wang, Juttler, Zheng & Liu, ACM TOG 27 (2008))
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
 from bladegen.definition.blade_definition import BladeDefinition, ReferenceAxis
+from bladegen.errors import DefinitionError
+from bladegen.support.arguments import function
 from bladegen.support.arrays import Array
+from bladegen.support.values import state_of
 
 __all__ = ["Frames", "Planform", "SectionPlanes", "normal_to_axis", "normal_to_z", "placement"]
 
@@ -93,7 +97,24 @@ def _turn(start: Array, end: Array) -> Array:
     return rotation
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class AxisFrames:
+    """Section frames (k, 3, 3) along an axis as a function of span, made when first needed."""
+
+    axis: ReferenceAxis
+    planes: SectionPlanes
+
+    __getstate__ = state_of
+
+    @cached_property
+    def _frames(self) -> Frames:
+        return self.planes(self.axis)
+
+    def __call__(self, eta: Array) -> Array:
+        return self._frames(eta)
+
+
+@dataclass(frozen=True, eq=False)
 class Planform:
     """Chord, twist, offsets and axis of a blade, and where they put its sections.
 
@@ -103,15 +124,24 @@ class Planform:
         The distributions.
     planes : callable
         Section planes: `normal_to_axis` or `normal_to_z`.
+    frames : AxisFrames, optional
+        Section frames (k, 3, 3) as a function of span; those of another planform are kept where
+        axis and planes are the same.
     """
 
     definition: BladeDefinition
     planes: SectionPlanes = normal_to_axis
+    frames: AxisFrames = field(default=cast(AxisFrames, None), repr=False)
 
-    @cached_property
-    def frames(self) -> Frames:
-        """Section frames (k, 3, 3) as a function of span."""
-        return self.planes(self.definition.axis)
+    def __post_init__(self) -> None:
+        must = "a function such as bladegen.blade.planform.normal_to_z"
+        function(self.planes, "planes", must, DefinitionError)
+        axis, known = self.definition.axis, self.frames
+        if known is None or known.axis is not axis or known.planes is not self.planes:
+            object.__setattr__(self, "frames", AxisFrames(axis, self.planes))
+
+    def __repr__(self) -> str:
+        return f"<Planform of {self.definition.name}>"
 
     def place(self, profiles: Array, eta: Array) -> Array:
         """Put unit-chord sections in space.

@@ -1,77 +1,97 @@
-"""The shape half of a blade: what its sections are before they are placed in space.
+"""What a blade's sections are before they are placed in space: a loft, deformed and thickened.
 
-Stations' shapes are joined on Gr(n, 2) by a path, and their affine maps by splines; trailing
-edges are brought to their width over span; deformations act on what results.  Span fractions
-(k,) to unit-chord sections (k, n, 2).
+Span fractions to sections of unit chord and of the relative thickness that rules.  A deformed
+shape shares its `Loft` with the shape that it was made from, and with it all that the loft has
+computed.
 """
 
-from collections.abc import Callable
-from dataclasses import replace
-from functools import cached_property
-from typing import TYPE_CHECKING
-
-import numpy as np
+from dataclasses import dataclass, replace
 
 from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
-from bladegen.airfoils.curves import SectionSplines
-from bladegen.airfoils.landmarks import Contour
-from bladegen.blade.edge_widths import EdgeWidths, Joining
-from bladegen.blade.paths import Parameter, Path, PathMaker, SectionSpline
-from bladegen.blade.perturbation import Perturbable
-from bladegen.definition.blade_definition import pchip
+from bladegen.blade.deformation import Deformation, Thickening
+from bladegen.blade.loft import Loft
+from bladegen.blade.spans import landmarks_at, span_fractions
 from bladegen.shapes import affine
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, ArrayLike
 
-__all__ = ["Shaped"]
-
-SAME_SHAPE = 1e-10  # of the largest singular value; stations may repeat an airfoil
+__all__ = ["Shape"]
 
 
-class Shaped(Perturbable):
-    """The shape half of `Blade`, which is its only kind and holds these fields."""
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Unit-chord sections as a function of span.
 
-    if TYPE_CHECKING:
-        representatives: Array
-        M: Array
-        b: Array
-        path: PathMaker
-        edge_width: Joining | None
-        contours: tuple[Contour, ...] | None
+    Parameters
+    ----------
+    loft : Loft
+        The stations' airfoils joined over span.
+    deformations : tuple of Deformation
+        Applied to the loft's shapes, one after the other.
+    thickenings : tuple of callable
+        Factors of the relative thickness over span.
+    """
 
-    @cached_property
-    def splines(self) -> SectionSplines:
-        """Splines through sections with the blade's landmarks."""
-        return SectionSplines(self.u)
+    loft: Loft
+    deformations: tuple[Deformation, ...] = ()
+    thickenings: tuple[Thickening, ...] = ()
 
-    @cached_property
-    def parameter(self) -> Parameter:
-        """The path's parameter as a function of span."""
-        return Parameter(self.eta, self.definition.relative_thickness)
-
-    @cached_property
-    def _joined(self) -> tuple[Path, SectionSpline]:
-        # A representative's rotation is moved to the tip's M first, so that no result
-        # depends on which representatives `points` holds.
-        knots = self.parameter.knots
-        angle, _ = affine.polar(self.M[-1:])
-        turn = affine.from_polar(angle, np.zeros((1, 2, 2)))
-        path, M = self.path(knots, self.representatives @ turn, turn.mT @ self.M)
-        return path, SectionSpline(knots, M, self.b)
-
-    @property
-    def shape_path(self) -> Path:
-        """The path on the Grassmannian, a function of `parameter`."""
-        return self._joined[0]
-
-    def wanted_thickness(self, eta: Array) -> Array | None:
-        """Return the relative thickness that rules at span fractions (k,), None if none does."""
-        plain, _, M, b = self.shapes(eta)
-        return self._target(eta, affine.restore(plain, M, b))
+    def __repr__(self) -> str:
+        return f"<Shape of {self.loft!r}, {len(self.deformations)} deformations>"
 
     @property
     def points(self) -> Array:
         """The stations' shapes as points of Gr(n, 2), deformations included, (s, n, 2)."""
-        return self._deformed(self.representatives, self.eta)
+        return self._deformed(self.loft.representatives, self.loft.eta)
+
+    def profiles(self, eta: ArrayLike, u: Array | None = None) -> Array:
+        """Return unit-chord sections (..., n, 2): see `Blade.profiles`."""
+        spans = span_fractions(eta)
+        u = u if u is None else landmarks_at(u)
+        flat, loft = spans.reshape(-1), self.loft
+        path = loft.at(flat)
+        opening = loft.opening(flat, *path)
+        points = opening(affine.restore(*path))
+        wanted = self._target(flat, points)
+        finer = points
+        if u is not None:
+            finer = opening(affine.restore(loft.between(u) @ path[0], *path[1:]))
+        if self.deformations:
+            stages = self._stages(flat, points)
+            change = stages[-1] - points
+            finer = finer + (change if u is None else loft.splines.values(u) @ change)
+            A, c, *_ = self._restored(stages, wanted)
+        else:
+            A, c = loft.splines.normalising(points, wanted)
+        result = affine.restore(finer, A, c)
+        return result.reshape(*spans.shape, *result.shape[1:])
+
+    def relative_thickness(self, eta: ArrayLike) -> Array:
+        """Return the relative thickness of the sections at `eta`."""
+        spans = span_fractions(eta)
+        curves = self.loft.splines.fit(self.profiles(spans.reshape(-1)))
+        return curves.relative_thickness.reshape(spans.shape)
+
+    def shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the shapes (k, n, 2) at span fractions (k,), the same deformed, and M and b.
+
+        Shapes are the path's, their trailing edges brought to width.  ``points @ M + b`` are
+        sections before they are brought to unit chord and thickness; bases join over span.
+        """
+        plain, M, b = self.loft.shapes(eta)
+        return plain, self._deformed(plain, eta), M, b
+
+    def wanted_thickness(self, eta: Array) -> Array | None:
+        """Return the relative thickness that rules at span fractions (k,), None if none does."""
+        return self._target(eta, affine.restore(*self.loft.shapes(eta)))
+
+    def chord_lines(self, eta: Array, thickness: Array | None) -> tuple[ChordLines, Motions]:
+        """Return chord lines of the sections at span fractions (k,), and how they got there.
+
+        That is where these sections have them if they are brought to the relative `thickness`
+        (k,), and the motions that the last deformation that keeps them took.
+        """
+        stages = self._stages(eta, affine.restore(*self.loft.shapes(eta)))
+        return self._restored(stages, thickness)[2:]
 
     def _deformed(self, X: Array, eta: Array) -> Array:
         for deformation in self.deformations:
@@ -97,12 +117,12 @@ class Shaped(Perturbable):
         does.  The lines and the last motions are returned besides.
         """
         motions = Motions.none(len(stages[0]))
-        curves = self.splines.fit(stages[0])
+        curves = self.loft.splines.fit(stages[0])
         A, c = curves.normalising(thickness)
         lines = ChordLines.of(curves.mapped(A, c))
         alone = lines.alone
         for deformation, points in zip(self.deformations, stages[1:], strict=True):
-            curves = self.splines.fit(points)
+            curves = self.loft.splines.fit(points)
             A, c = curves.normalising(thickness)
             own = ChordLines.of(curves.mapped(A, c))
             alone = alone & own.alone
@@ -112,74 +132,15 @@ class Shaped(Perturbable):
                 lines = own.moved(motions)
         return *motions.after(A, c), replace(lines, alone=alone), motions
 
-    def chord_lines(self, eta: Array, thickness: Array | None) -> tuple[ChordLines, Motions]:
-        """Return chord lines of the sections at span fractions (k,), and how they got there.
-
-        That is where sections of this blade have them if they are brought to the relative
-        `thickness` (k,), and the motions that the last deformation that keeps them took.
-        """
-        plain, _, M, b = self.shapes(eta)
-        return self._restored(self._stages(eta, affine.restore(plain, M, b)), thickness)[2:]
-
-    def shapes(self, eta: Array) -> tuple[Array, Array, Array, Array]:
-        """Return the shapes (k, n, 2) at span fractions (k,), the same deformed, and M and b.
-
-        Shapes are the path's, their trailing edges brought to width.  ``points @ M + b`` are
-        sections before they are brought to unit chord and thickness; bases join over span.
-        """
-        path = self._path(eta)
-        opening = self._opening(eta, *path)
-        plain, M, b = affine.standardise(opening(affine.restore(*path)))
-        return plain, self._deformed(plain, eta), M, b
-
-    def _path(self, eta: Array) -> tuple[Array, Array, Array]:
-        """Return the path's points X, M and b at span fractions (k,)."""
-        path, spline = self._joined
-        q = self.parameter(eta)
-        return path(q), *spline(q)
-
-    @cached_property
-    def _widths(self) -> EdgeWidths:
-        airfoils = affine.restore(self.representatives, self.M, self.b)
-        thickness = self._ruling(self.eta)
-        return EdgeWidths.through(
-            airfoils, self.splines, thickness, self.parameter.knots, self.edge_width or pchip
-        )
-
-    def _opening(self, eta: Array, X: Array, M: Array, b: Array) -> Callable[[Array], Array]:
-        """Return the map that brings the path's sections, at any points, to their edge's width."""
-        if self.edge_width is None:
-            return lambda points: points
-        landmarks = affine.restore(X, M, b)
-        return self._widths.opening(landmarks, self._ruling(eta), self.parameter(eta))
-
-    def _ruling(self, eta: Array) -> Array | None:
-        """Return the definition's relative thickness at span fractions (k,), if it has one."""
-        thickness = self.definition.relative_thickness
-        return None if thickness is None else thickness(eta)
-
     def _target(self, eta: Array, points: Array) -> Array | None:
         """Return the relative thickness that sections shall have; None if nothing rules it.
 
-        Without a distribution, a perturbed blade keeps the thickness it had.
+        Without a distribution, a perturbed shape keeps the thickness it had.
         """
-        target = self._ruling(eta)
+        target = self.loft.ruling(eta)
         if target is None and (self.deformations or self.thickenings):
-            target = self.splines.fit(points).relative_thickness
+            target = self.loft.splines.fit(points).relative_thickness
         if target is not None:
             for thickening in self.thickenings:
                 target = target * thickening(eta)
         return target
-
-    def _between(self, u: Array) -> Array:
-        """Return the linear map (m, n) from a path's landmarks to its points at `u`.
-
-        Paths run in the span of the stations' shapes, so a map that is right for these is
-        right for all that lies between them.
-        """
-        if self.contours is None:
-            return SectionSplines(self.u).values(u)
-        airfoils = np.stack([contour.landmarks(u) for contour in self.contours])
-        finer = (airfoils - self.b[:, None]) @ np.linalg.inv(self.M)
-        columns = np.concatenate([*self.representatives], axis=1)
-        return np.concatenate([*finer], axis=1) @ np.linalg.pinv(columns, rcond=SAME_SHAPE)

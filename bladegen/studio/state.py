@@ -122,7 +122,7 @@ class State:
     window : (float, float), optional
         Where along the span changes fade in; past round roots if None.
     thickness, camber, chord, twist, prebend : float
-        See `deformation.AffineChange`; twist in degrees, prebend is `prebend_scale`.
+        See `affine_change.AffineChange`; twist in degrees, prebend is `prebend_scale`.
     at : float
         Span fraction of the section that is shown.
     """

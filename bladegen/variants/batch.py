@@ -146,7 +146,7 @@ class SectionBatch:
     @cached_property
     def _lines(self) -> tuple[ChordLines, Motions]:
         """The baseline's chord lines at its own relative thickness, and how they got there."""
-        return self.blade.chord_lines(self.eta, self._ruling)
+        return self.blade.shape.chord_lines(self.eta, self._ruling)
 
     def _standing(self, target: Array) -> Array:
         """Return where sections of relative thickness (k, b) shall stand, (k, b, 4).
@@ -165,7 +165,7 @@ class SectionBatch:
         two = ~self._lines[0].alone & np.any(target != self._ruling[:, None], axis=1)
         for k in np.flatnonzero(two):
             eta = np.full(target.shape[1], self.eta[k])
-            result[k] = numbers(*self.blade.chord_lines(eta, target[k]))
+            result[k] = numbers(*self.blade.shape.chord_lines(eta, target[k]))
         return result
 
     def coefficients(self, t: Array) -> Array:

@@ -1,7 +1,7 @@
 """Designs of experiments: which variants a family holds.
 
 A design says for each variant where it lies along some factors: coordinates along the modes of
-a shape space (t1, t2, ... in radians) and the affine parameters of `deformation.AffineChange`.
+a shape space (t1, t2, ... in radians) and the affine parameters of `affine_change.AffineChange`.
 Points of the unit cube (scipy.stats.qmc, or independent ones) are carried to a region: the box
 between bounds, the ellipsoid that contains the data of a space, or the normal distribution with
 the data's covariance.  Variant i depends on the seed and on i alone (with a Latin hypercube on

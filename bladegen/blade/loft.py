@@ -1,0 +1,192 @@
+"""A blade's airfoils joined over span, before anything is perturbed.
+
+Stations' shapes are joined on Gr(n, 2) by a path, and their affine maps by splines; trailing
+edges are brought to their width over span.  A `Loft` is what all variants of a blade share, and
+with it what it has computed.  Span fractions (k,) to sections (k, n, 2), not brought to size.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.landmarks import Contour, Spacing, contour, landmark_parameters
+from bladegen.blade.edge_widths import EdgeWidths, Joining
+from bladegen.blade.paths import PATHS, Parameter, Path, PathMaker, SectionSpline, geodesic_path
+from bladegen.definition.blade_definition import BladeDefinition, Distribution, pchip
+from bladegen.definition.remarks import disagreeing, opened
+from bladegen.definition.thickness import own_thickness
+from bladegen.errors import DefinitionError, Finding
+from bladegen.shapes import affine
+from bladegen.support.arguments import amount, function, instance, one_of, whole
+from bladegen.support.arrays import Array, readonly
+from bladegen.support.values import state_of
+
+__all__ = ["Loft", "lofted"]
+
+SAME_SHAPE = 1e-10  # of the largest singular value; stations may repeat an airfoil
+
+
+@dataclass(frozen=True, eq=False)
+class Loft:
+    """The stations' airfoils joined over span.
+
+    Parameters
+    ----------
+    u : (n,) array
+        Landmark parameters, 0 at the suction side's trailing edge, 0.5 at the leading edge.
+    eta : (s,) array
+        Span fractions of the stations.
+    representatives : (s, n, 2) array
+        The stations' airfoils as points of Gr(n, 2): orthonormal, centred bases.
+    M, b : (s, 2, 2), (s, 2) arrays
+        Their affine maps, ``airfoil = representatives @ M + b``.
+    relative_thickness : Distribution, optional
+        The thickness over chord that rules over span; without it, that of the path.
+    path : callable
+        How stations are joined: `paths.geodesic_path` or `spline_path`.
+    edge_width : callable, optional
+        Joins the stations' edge widths over the path's parameter: `definition.pchip`, or None
+        for the widths that the path happens to have.
+    contours : tuple of Contour, optional
+        The stations' airfoils between their landmarks; without them, splines through the
+        landmarks.
+    fairing : float, optional
+        How far airfoils may have been moved to take noise out [chord], to be told.
+    """
+
+    u: Array
+    eta: Array
+    representatives: Array
+    M: Array
+    b: Array
+    relative_thickness: Distribution | None = None
+    path: PathMaker = geodesic_path
+    edge_width: Joining | None = pchip
+    contours: tuple[Contour, ...] | None = None
+    fairing: float | None = None
+
+    def __post_init__(self) -> None:
+        for field in ("u", "eta", "representatives", "M", "b"):
+            object.__setattr__(self, field, readonly(getattr(self, field)))
+
+    __getstate__ = state_of
+
+    def __repr__(self) -> str:
+        return f"<Loft of {len(self.eta)} stations, {len(self.u)} landmarks>"
+
+    @cached_property
+    def splines(self) -> SectionSplines:
+        """Splines through sections with these landmarks."""
+        return SectionSplines(self.u)
+
+    @cached_property
+    def parameter(self) -> Parameter:
+        """The path's parameter as a function of span."""
+        return Parameter(self.eta, self.relative_thickness)
+
+    @cached_property
+    def _joined(self) -> tuple[Path, SectionSpline]:
+        # A representative's rotation is moved to the tip's M first, so that no result
+        # depends on which representatives there are.
+        knots = self.parameter.knots
+        angle, _ = affine.polar(self.M[-1:])
+        turn = affine.from_polar(angle, np.zeros((1, 2, 2)))
+        path, M = self.path(knots, self.representatives @ turn, turn.mT @ self.M)
+        return path, SectionSpline(knots, M, self.b)
+
+    @property
+    def shape_path(self) -> Path:
+        """The path on the Grassmannian, a function of `parameter`."""
+        return self._joined[0]
+
+    def at(self, eta: Array) -> tuple[Array, Array, Array]:
+        """Return the path's points X and their maps M and b at span fractions (k,)."""
+        path, spline = self._joined
+        q = self.parameter(eta)
+        return path(q), *spline(q)
+
+    def shapes(self, eta: Array) -> tuple[Array, Array, Array]:
+        """Return shapes (k, n, 2) at span fractions (k,), their edges brought to width, M and b.
+
+        Bases join over span.
+        """
+        path = self.at(eta)
+        opening = self.opening(eta, *path)
+        return affine.standardise(opening(affine.restore(*path)))
+
+    @cached_property
+    def _widths(self) -> EdgeWidths:
+        airfoils = affine.restore(self.representatives, self.M, self.b)
+        thickness = self.ruling(self.eta)
+        return EdgeWidths.through(
+            airfoils, self.splines, thickness, self.parameter.knots, self.edge_width or pchip
+        )
+
+    def opening(self, eta: Array, X: Array, M: Array, b: Array) -> Callable[[Array], Array]:
+        """Return the map that brings the path's sections, at any points, to their edge's width."""
+        if self.edge_width is None:
+            return lambda points: points
+        landmarks = affine.restore(X, M, b)
+        return self._widths.opening(landmarks, self.ruling(eta), self.parameter(eta))
+
+    def ruling(self, eta: Array) -> Array | None:
+        """Return the relative thickness that rules at span fractions (k,), if one does."""
+        thickness = self.relative_thickness
+        return None if thickness is None else thickness(eta)
+
+    def between(self, u: Array) -> Array:
+        """Return the linear map (m, n) from a path's landmarks to its points at `u`.
+
+        Paths run in the span of the stations' shapes, so a map that is right for these is
+        right for all that lies between them.
+        """
+        if self.contours is None:
+            return SectionSplines(self.u).values(u)
+        airfoils = np.stack([contour.landmarks(u) for contour in self.contours])
+        finer = (airfoils - self.b[:, None]) @ np.linalg.inv(self.M)
+        columns = np.concatenate([*self.representatives], axis=1)
+        return np.concatenate([*finer], axis=1) @ np.linalg.pinv(columns, rcond=SAME_SHAPE)
+
+
+def lofted(
+    definition: BladeDefinition,
+    landmarks: int,
+    path: str,
+    spacing: Spacing,
+    fairing: float | None,
+) -> tuple[BladeDefinition, Loft, tuple[Finding, ...]]:
+    """Join a definition's airfoils over span: landmarks, standardisation, path.
+
+    Returned are the definition, with the airfoils' own thickness over span where it gives none,
+    and what was mended or looks odd, besides.
+    """
+    must = "a BladeDefinition, such as bladegen.read('iea15mw') or bladegen.read(path) gives"
+    instance(definition, BladeDefinition, "definition", must, DefinitionError)
+    one_of(path, PATHS, "path", DefinitionError)
+    must = "a function such as bladegen.airfoils.landmarks.cosine"
+    function(spacing, "spacing", must, DefinitionError)
+    if fairing is not None:
+        amount(fairing, "fairing", DefinitionError)
+    u = landmark_parameters(whole(landmarks, "landmarks", DefinitionError), spacing)
+    curves = {
+        id(station.airfoil): contour(station.airfoil.coordinates, fairing=fairing)
+        for station in definition.stations
+    }
+    shapes = {key: curve.landmarks(u) for key, curve in curves.items()}
+    keys = [id(station.airfoil) for station in definition.stations]
+    airfoils = np.stack([shapes[key] for key in keys])
+    X, M, b = affine.standardise(airfoils)
+    contours = tuple(curves[key] for key in keys)
+    eta = np.array([station.eta for station in definition.stations])
+    findings = (
+        definition.findings + opened(definition, contours) + disagreeing(definition, u, airfoils)
+    )
+    if definition.relative_thickness is None:
+        definition = replace(definition, relative_thickness=own_thickness(eta, u, airfoils))
+    thickness = definition.relative_thickness
+    way = PATHS[path]
+    loft = Loft(u, eta, X, M, b, thickness, way, contours=contours, fairing=fairing)
+    return definition, loft, findings

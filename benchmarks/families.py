@@ -28,6 +28,8 @@ from threadpoolctl import threadpool_limits
 import bladegen as bg
 from bladegen.errors import ToleranceError
 from bladegen.exports import exporters
+from bladegen.exports.options import Options
+from bladegen.exports.products import Products
 from bladegen.families.family import BLOCK
 from bladegen.families.run import Order, run
 from bladegen.surface import net
@@ -110,14 +112,14 @@ def write_steps(
     blade: bg.Blade, space: bg.ShapeSpace, reach: float, count: int, target: Path
 ) -> None:
     """Print what STEP files of variants take; the baseline's is made first, and not counted."""
-    products = exporters.Products(blade, exporters.Options())
+    products = Products(blade, Options())
     exporters.write(products, target)
     spans = net.fitted(blade, products.options.tolerance)[0].v
-    options = exporters.Options(spans=spans)
+    options = Options(spans=spans)
     clock, processor, off, missed = [], [], [], 0
     with threadpool_limits(1):  # as a family's processes do
         for variant in list(bg.family(blade, space, count=count, seed=7, reach=reach)):
-            products = exporters.Products(variant, options)
+            products = Products(variant, options)
             try:
                 each = spent(lambda products=products: exporters.write(products, target))
             except ToleranceError:

@@ -22,6 +22,8 @@ from figures import asked, figure, seconds
 import bladegen as bg
 from bladegen.cad import solids
 from bladegen.exports import exporters
+from bladegen.exports.options import Options
+from bladegen.exports.products import Products
 from bladegen.measures import properties
 from bladegen.surface import grid, mesh
 
@@ -35,8 +37,8 @@ SPANS, PLACES = 60, 16  # of the points that are measured
 
 def gridded(blade: bg.Blade, stations: int, path: Path) -> None:
     """Write our mesh."""
-    options = exporters.Options(stations=stations)
-    exporters.write(exporters.Products(replace(blade), options), path)
+    options = Options(stations=stations)
+    exporters.write(Products(replace(blade), options), path)
 
 
 def tessellated(solid: solids.Solid, distance: float, path: Path) -> None:

@@ -37,7 +37,7 @@ from bladegen.airfoils.polars import Polar
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.planform import normal_to_axis, normal_to_z
 from bladegen.errors import BladegenError
-from bladegen.exports.exporters import Options
+from bladegen.exports.options import Options
 from bladegen.formats import writing
 from bladegen.formats.airfoils.reading import read_airfoil
 from bladegen.formats.windio.yaml_file import parse_yaml

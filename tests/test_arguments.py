@@ -10,7 +10,7 @@ import bladegen as bg
 from bladegen.blade import edges, planform
 from bladegen.blade.deformation import AffineChange
 from bladegen.errors import BladegenError, ExportError, PerturbationError
-from bladegen.exports.exporters import Options
+from bladegen.exports.options import Options
 from bladegen.shapes import affine, grassmann
 from bladegen.support.arguments import (
     amount,

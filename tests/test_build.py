@@ -6,7 +6,7 @@ import bladegen as bg
 from bladegen.cad import exchange, solids
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.exports.build import build, report_path
-from bladegen.exports.exporters import Options
+from bladegen.exports.options import Options
 from bladegen.surface.tips import round_tip
 from bladegen.views.tables import report_rows
 

@@ -7,6 +7,9 @@ import bladegen as bg
 from bladegen.cad import exchange, solids
 from bladegen.errors import ExportError, SizeError, ToleranceError
 from bladegen.exports import exporters
+from bladegen.exports.options import Kind, Options
+from bladegen.exports.products import Products
+from bladegen.exports.registry import FORMATS, Format
 from bladegen.surface import mesh
 from bladegen.surface.grid import Spacing
 from bladegen.surface.tips import flat_tip, round_tip
@@ -67,7 +70,7 @@ def test_the_same_blade_gives_the_same_bytes(blade, suffix, tmp_path):
     assert first == second
 
 
-GRIDS = [name for name, row in exporters.FORMATS.items() if row.kind is exporters.Kind.grid]
+GRIDS = [name for name, row in FORMATS.items() if row.kind is Kind.grid]
 
 
 @pytest.mark.parametrize("suffix", GRIDS)
@@ -106,8 +109,8 @@ def test_sections_by_suffix(blade, tmp_path):
 
 def test_a_round_tip_is_on_meshes_and_grids_alike(blade):
     spacing = Spacing(around=33, along=9, edge=4, leading_edge=0.02, trailing_edge=0.02, root=0.1)
-    options = exporters.Options(stations=20, tip=round_tip, spacing=spacing)
-    products = exporters.Products(blade, options)
+    options = Options(stations=20, tip=round_tip, spacing=spacing)
+    products = Products(blade, options)
     tops = [products.mesh.vertices[:, 2].max()]
     tops.append(max(block.points[..., 2].max() for block in products.grid.blocks))
     assert min(tops) > 1.001 * blade.length
@@ -128,7 +131,7 @@ def test_a_solid_that_misses_its_tolerance_is_kept_aside(blade, tmp_path, monkey
 
 
 def test_products_are_made_once(blade):
-    products = exporters.Products(blade, exporters.Options(stations=20))
+    products = Products(blade, Options(stations=20))
     assert products.mesh is products.mesh
 
 
@@ -156,18 +159,14 @@ def test_a_failing_writer_leaves_nothing(blade, tmp_path, monkeypatch):
         path.write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setitem(
-        exporters.FORMATS, ".stl", exporters.Format(exporters.Kind.triangles, "broken", fail)
-    )
+    monkeypatch.setitem(FORMATS, ".stl", Format(Kind.triangles, "broken", fail))
     with pytest.raises(ExportError, match="No space left"):
         bg.export(blade, tmp_path / "blade.stl")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_solid_larger_than_allowed_is_kept_aside(blade, tmp_path):
-    products = exporters.Products(
-        blade, exporters.Options(tolerance=5e-3, sections=30, largest=9000)
-    )
+    products = Products(blade, Options(tolerance=5e-3, sections=30, largest=9000))
     with pytest.raises(
         SizeError, match=r"takes \d\.\d\d MB at 5 mm, allowed are 0\.009 MB"
     ) as raised:

@@ -16,7 +16,7 @@ from processes import children, gone_within
 import bladegen as bg
 from bladegen.cad import exchange, solids
 from bladegen.errors import BladegenError, PerturbationError
-from bladegen.exports.exporters import Options
+from bladegen.exports.options import Options
 from bladegen.families.family import BLOCK
 from bladegen.families.folder import FamilyFolder, sections_digest
 from bladegen.families.run import Order, run

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import bladegen as bg
 from bladegen.cli import commands
 from bladegen.exports.build import build
-from bladegen.exports.exporters import Options
+from bladegen.exports.options import Options
 from bladegen.families.run import Order, run
 
 LOGGER = logging.getLogger("bladegen")

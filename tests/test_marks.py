@@ -18,10 +18,11 @@ import bladegen as bg
 from bladegen.cad import exchange
 from bladegen.exports import marks
 from bladegen.exports.build import build, report_path
-from bladegen.exports.exporters import FORMATS, Options, Products
 from bladegen.exports.inventory import made_by
-from bladegen.exports.options import Kind
+from bladegen.exports.options import Kind, Options
+from bladegen.exports.products import Products
 from bladegen.exports.provenance import Provenance, made_from, word
+from bladegen.exports.registry import FORMATS
 from bladegen.measures import checks
 from bladegen.surface.grid import Spacing
 from bladegen.surface.tips import round_tip

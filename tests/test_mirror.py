@@ -12,7 +12,8 @@ from bladegen.cad import solids
 from bladegen.cad.rotor import rotor_of
 from bladegen.cli import commands
 from bladegen.errors import ExportError, FamilyError
-from bladegen.exports import exporters
+from bladegen.exports.options import Options
+from bladegen.exports.products import Products
 from bladegen.measures import checks, properties
 from bladegen.surface import mesh, net
 from bladegen.surface.grid import Spacing
@@ -130,7 +131,7 @@ def test_pictures_say_it(blade, image):
 
 
 def test_a_rotor_of_mirror_images_is_the_mirrored_rotor(blade, image):
-    products = [exporters.Products(b, exporters.Options(stations=20)) for b in (blade, image)]
+    products = [Products(b, Options(stations=20)) for b in (blade, image)]
     one, two = products[0].mesh, products[1].mesh
     assert_allclose(np.sort(two.vertices[:, 1]), np.sort(-one.vertices[:, 1]), atol=1e-12)
     assert rotor_of(image) == rotor_of(blade)  # its blades are mirrored already

@@ -11,7 +11,8 @@ from processes import gone_within, running
 from test_readers_tables import TABLE, airfoils
 
 from bladegen.errors import StudioError
-from bladegen.exports.exporters import FORMATS, Format, Kind
+from bladegen.exports.options import Kind
+from bladegen.exports.registry import FORMATS, Format
 from bladegen.measures import checks
 from bladegen.studio.state import State
 from bladegen.studio.worker import Job, Worker, formats, make

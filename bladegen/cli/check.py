@@ -71,9 +71,11 @@ def check(
 
 def blade_of(file: str, airfoils: Path | None = None) -> Any:
     """Return the blade that a name or a definition means, None for other files."""
-    from bladegen.formats.reading import SUFFIXES, bundled
+    from bladegen.formats.reading import bundled, is_read
+    from bladegen.measures.foreign import MESHES, SOLIDS
 
-    if file in bundled() or Path(file).suffix.lower() in ("", *SUFFIXES):
+    suffix = Path(file).suffix.lower()
+    if file in bundled() or not suffix or (suffix not in SOLIDS + MESHES and is_read(Path(file))):
         return replace(MAKING, airfoils=airfoils).blade(file)
     return None
 

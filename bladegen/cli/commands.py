@@ -13,6 +13,7 @@ from bladegen.cli import space
 from bladegen.cli.check import check
 from bladegen.cli.convert import convert
 from bladegen.cli.family import family
+from bladegen.cli.formats import formats
 from bladegen.cli.options import (
     LANDMARKS,
     MAKING,
@@ -58,6 +59,7 @@ app.add_typer(space.app, name="space")
 app.command()(check)
 app.command()(convert)
 app.command()(family)
+app.command()(formats)
 app.command(epilog=KEYS)(preview)
 app.command()(plot)
 app.command()(studio)

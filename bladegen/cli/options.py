@@ -142,7 +142,7 @@ def ending_in(*suffixes: str) -> Callable[[typer.CallbackParam, Path | None], Pa
 def _folder(param: typer.CallbackParam, value: Path) -> Path:
     """Refuse a file's name where a folder is meant."""
     from bladegen.errors import ExportError
-    from bladegen.exports.exporters import FORMATS
+    from bladegen.exports.registry import FORMATS
 
     suffix = next((one for one in FORMATS if value.name.lower().endswith(one)), "")
     if suffix and not value.is_dir():
@@ -256,7 +256,7 @@ class Producing:
     def options(self) -> Any:
         """Return how products are made."""
         from bladegen.cli.texts import metres
-        from bladegen.exports.exporters import Options
+        from bladegen.exports.options import Options
         from bladegen.surface.grid import Spacing
         from bladegen.surface.tips import TIPS
 
@@ -293,9 +293,14 @@ MAKING, PRODUCING = Making(), Producing()
 def suffixes_of(formats: list[str] | None) -> tuple[str, ...]:
     """Return the suffixes of the formats that are asked for, none by default."""
     from bladegen.cli.texts import suffixes
-    from bladegen.exports.exporters import FORMATS
+    from bladegen.exports import registry
 
-    return suffixes(formats, FORMATS) if formats else ()
+    if not formats:
+        return ()
+    try:
+        return suffixes(formats, registry.FORMATS)
+    except BladegenError:  # one is not bladegen's own
+        return suffixes(formats, registry.formats(), registry.plugins().remark)
 
 
 def grouped(command: Callable[..., None]) -> Callable[..., None]:

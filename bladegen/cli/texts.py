@@ -36,8 +36,10 @@ _ANGLE = re.compile(r"\s*([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(deg|°|ra
 _LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(um|mm|cm|m)\s*")
 
 
-def suffixes(texts: Sequence[str], known: Iterable[str]) -> tuple[str, ...]:
+def suffixes(texts: Sequence[str], known: Iterable[str], remark: str = "") -> tuple[str, ...]:
     """Return the suffixes that formats are asked for by, several in one text or in many.
+
+    A remark ends the message if one is not known.
 
     Raises
     ------
@@ -55,6 +57,7 @@ def suffixes(texts: Sequence[str], known: Iterable[str]) -> tuple[str, ...]:
             raise BladegenError(
                 f"format: got {word!r}: no format has the suffix '.{word}', allowed are "
                 f"{', '.join(allowed)}{suggestion(word, allowed, lambda name: name.lstrip('.'))}"
+                f"{remark}"
             )
     return tuple(dict.fromkeys(found))
 

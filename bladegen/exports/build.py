@@ -23,7 +23,10 @@ from bladegen.cad.rotor import Rotor, write_glb, write_step
 from bladegen.errors import ExportError, PromiseError
 from bladegen.exports import exporters, marks
 from bladegen.exports.inventory import REPORT, entry_of, others
+from bladegen.exports.options import Kind, Options
+from bladegen.exports.products import Products
 from bladegen.exports.provenance import Provenance, word
+from bladegen.exports.registry import FORMATS, format_of, suffix_of
 from bladegen.formats import writing as writers
 from bladegen.measures import checks
 from bladegen.measures.spanwise import spanwise, write_csv
@@ -50,7 +53,7 @@ def build(
     target: Path,
     *,
     formats: Sequence[str] = DEFAULT_FORMATS,
-    options: exporters.Options | None = None,
+    options: Options | None = None,
     rotor: Rotor | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
@@ -97,17 +100,17 @@ def _built(
     blade: Blade,
     target: Path,
     formats: Sequence[str],
-    options: exporters.Options | None,
+    options: Options | None,
     rotor: Rotor | None,
     progress: Callable[[str], None],
 ) -> dict[str, Any]:
     stem = safe_stem(blade.name)
     paths = [target / f"{stem}.{suffix.lower().lstrip('.')}" for suffix in formats]
     for path in paths:
-        if exporters.format_of(path).kind is exporters.Kind.definition and blade.mirrored:
+        if format_of(path).kind is Kind.definition and blade.mirrored:
             raise ExportError(writers.MIRRORED)
-    options = options or exporters.Options()
-    products = exporters.Products(blade, options, progress)
+    options = options or Options()
+    products = Products(blade, options, progress)
     ledger = _Ledger(progress)
     report: dict[str, Any] = {
         "blade": blade.name,
@@ -130,19 +133,19 @@ def _built(
                 exporters.write(products, path)
             except PromiseError as error:
                 miss, made = miss or error, error.kept or path
-        kind = exporters.format_of(path).kind
-        ledger.note(made, products.made_from(kind, exporters.suffix_of(path)))
+        kind = format_of(path).kind
+        ledger.note(made, products.made_from(kind, suffix_of(path)))
         with ledger.timed("measuring the files"):
             _measure(report, products, kind, made)
     if rotor is not None:
         report["rotor"] = asdict(rotor) | {"mirrored": blade.mirrored != rotor.mirrored}
         miss = _rotor(rotor, products, target / f"{stem}.rotor", ledger) or miss
     if any(path.suffix == ".png" for path in paths):
-        by = products.made_from(exporters.Kind.picture, ".png")
+        by = products.made_from(Kind.picture, ".png")
         with ledger.writing(target / f"{stem}.combs.png", "combs", by) as temporary:
             combs.draw(blade, temporary)
     columns = spanwise(blade, blade.stations(options.stations))
-    by = products.made_from(exporters.Kind.table, ".csv")
+    by = products.made_from(Kind.table, ".csv")
     with ledger.writing(target / f"{stem}{SPANWISE}", "spanwise", by) as temporary:
         write_csv(columns, temporary)
     some = slice(None, None, max(1, options.stations // SPANWISE_ROWS))
@@ -159,9 +162,7 @@ def _built(
     return report
 
 
-def _rotor(
-    rotor: Rotor, products: exporters.Products, stem: Path, ledger: "_Ledger"
-) -> PromiseError | None:
+def _rotor(rotor: Rotor, products: Products, stem: Path, ledger: "_Ledger") -> PromiseError | None:
     """Write a rotor's two files; return what was asked of its solids and is not so."""
     made, miss = stem.with_name(f"{stem.name}.step"), None
     ledger.progress(f"writing {made.name}")
@@ -169,8 +170,8 @@ def _rotor(
     solid, triangles = (
         replace(by, settings=by.settings + told, id="")
         for by in (
-            products.made_from(exporters.Kind.solid, ".step"),
-            products.made_from(exporters.Kind.triangles, ".glb"),
+            products.made_from(Kind.solid, ".step"),
+            products.made_from(Kind.triangles, ".glb"),
         )
     )
     with ledger.timed("rotor"), replacing(made) as temporary:
@@ -219,25 +220,23 @@ class _Ledger:
         self.files.append(entry_of(path, made))
 
 
-def _made_here(products: exporters.Products, path: Path) -> Provenance | None:
+def _made_here(products: Products, path: Path) -> Provenance | None:
     """Return what a file of that name would be made from; None if its format is none of ours."""
     try:
-        suffix = exporters.suffix_of(path)
+        suffix = suffix_of(path)
     except ExportError:
         return None
     table = path.name.endswith(SPANWISE)
-    kind = exporters.Kind.table if table else exporters.FORMATS[suffix].kind
+    kind = Kind.table if table else format_of(path).kind
     return products.made_from(kind, suffix)
 
 
-def _measure(
-    report: dict[str, Any], products: exporters.Products, kind: exporters.Kind, path: Path
-) -> None:
+def _measure(report: dict[str, Any], products: Products, kind: Kind, path: Path) -> None:
     """Add what a file of that kind gives to measure."""
-    if kind is exporters.Kind.solid:
+    if kind is Kind.solid and suffix_of(path) in FORMATS:
         products.progress("reading the solid again")
         report["solid"] = _solid(products, path, report["figures"]["volume_m3"])
-    elif kind is exporters.Kind.grid:
+    elif kind is Kind.grid:
         report.setdefault("grid", grid_figures(products.grid))
     elif path.suffix in _MESHES:
         figures = checks.mesh_figures(mesh.read(path))
@@ -249,7 +248,7 @@ def report_path(target: Path, name: str) -> Path:
     return target / f"{safe_stem(name)}{REPORT}"
 
 
-def _solid(products: exporters.Products, path: Path, wanted: float) -> dict[str, Any]:
+def _solid(products: Products, path: Path, wanted: float) -> dict[str, Any]:
     """Measure a STEP file as it lies on the disk, against the solid and the blade."""
     solid = products.solid
     again = checks.solid_figures(exchange.read(path), quick=True)
@@ -284,7 +283,7 @@ def _deviation(deviation: Deviation) -> dict[str, Any]:
     }
 
 
-def _settings(blade: Blade, options: exporters.Options) -> dict[str, Any]:
+def _settings(blade: Blade, options: Options) -> dict[str, Any]:
     return {
         "landmarks": len(blade.u),
         "path": blade.path.__name__,

@@ -20,6 +20,9 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.errors import ExportError, FamilyError, PerturbationError, PromiseError
 from bladegen.exports import exporters
+from bladegen.exports.options import Options
+from bladegen.exports.products import Products
+from bladegen.exports.registry import format_of
 from bladegen.families.family import BLOCK, Block, Family
 from bladegen.families.folder import FLOAT_TYPES, FamilyFolder
 from bladegen.families.forecasts import Forecast, free_bytes, require_room
@@ -62,13 +65,13 @@ class Order:
     target: Path
     formats: tuple[str, ...] = ()
     dtype: str = "float32"
-    options: exporters.Options = field(default_factory=exporters.Options)
+    options: Options = field(default_factory=Options)
 
     def __post_init__(self) -> None:
         if self.dtype not in FLOAT_TYPES:
             raise FamilyError(f"dtype: got {self.dtype!r}, allowed are {', '.join(FLOAT_TYPES)}")
         for suffix in self.suffixes:
-            exporters.format_of(Path(f"x{suffix}"))
+            format_of(Path(f"x{suffix}"))
         # Sums depend in their last digit on how many threads add them up: what the family has
         # computed so far is left behind, and `_make` computes it again in one thread.
         fresh = replace(self.family, blade=replace(self.family.blade))
@@ -276,7 +279,7 @@ def _export(order: Order, blade: Blade, path: Path) -> tuple[Path, str]:
     """Write one file; return it, under another name if something is wrong, and what, or ""."""
     options = replace(order.options, timestamp=TIMESTAMP, spans=order.spans)
     try:
-        exporters.write(exporters.Products(blade, options), path)
+        exporters.write(Products(blade, options), path)
     except PromiseError as error:
         return error.kept or path, str(error).replace(f"{path.parent}/", "")
     return path, ""

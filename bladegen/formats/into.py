@@ -4,36 +4,32 @@ from pathlib import Path
 
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import Finding
-from bladegen.formats.hawc2.into import write_into_htc
-from bladegen.formats.openfast.into import write_into_main
-from bladegen.formats.proof import GRID, WHOLE, put_in_place, read_back, taken_back
-from bladegen.formats.windio.into import write_into_turbine
+from bladegen.formats.proof import put_in_place, read_back, taken_back
+from bladegen.formats.registry import Format, PutBack, every
 from bladegen.support.files import require_suffix
 
 __all__ = ["write_into"]
 
-OTHERS = {".dat": write_into_main, ".htc": write_into_htc}
-YAML = (".yaml", ".yml")
+YAML = ".yaml"
 
 
 def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[Finding, ...]:
-    """Write a turbine file with its blade replaced, in the windIO version that it is in.
-
-    AeroDyn's main input and an htc file of HAWC2 are turbine files too, as OTHERS has them.
+    """Write a model of a tool with its blade replaced, in the format that it is in.
 
     Parameters
     ----------
     definition : BladeDefinition
         The blade.
     turbine : Path
-        The full turbine file of windIO, AeroDyn's main input (.dat), or an htc file.
+        The full turbine file of windIO, AeroDyn's main input (.dat), an htc file, or a file of
+        another format whose row in `registry` puts blades back.
     path : Path
         Where to; may be `turbine` itself.
 
     Returns
     -------
     tuple of Finding
-        What the version cannot hold, and what of the turbine may no longer fit the blade.
+        What the format cannot hold, and what of the turbine may no longer fit the blade.
 
     Raises
     ------
@@ -43,15 +39,23 @@ def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[
         If the file with the blade in it cannot be read, by what was wrong before or else.
     """
     own = turbine.suffix.lower()
-    require_suffix(path, YAML if own in YAML else (own,))
-    other = OTHERS.get(own)
-    if other is not None:
-        with taken_back(path):
-            said = other(definition, turbine, path)
-            partly = any(finding.where == "aero" for finding in said)
-            if partly or path.parent.resolve() != turbine.parent.resolve():
-                return said  # names lead to files that are elsewhere
-            return said + read_back(path, path, definition, GRID)
-    with put_in_place(path) as draft:
-        said = write_into_turbine(definition, turbine, draft)
-        return said + read_back(draft, path, definition, WHOLE, turbine)
+    row, way = _way(own)
+    require_suffix(path, way.suffixes if own in way.suffixes else (own,))
+    if row.alone:
+        with put_in_place(path) as draft:
+            said = way.write(definition, turbine, draft)
+            return said + read_back(draft, path, definition, way.tolerance, turbine)
+    with taken_back(path):
+        said = way.write(definition, turbine, path)
+        partly = any(finding.where == "aero" for finding in said)
+        if partly or path.parent.resolve() != turbine.parent.resolve():
+            return said  # names lead to files that are elsewhere
+        return said + read_back(path, path, definition, way.tolerance)
+
+
+def _way(suffix: str) -> tuple[Format, PutBack]:
+    """Return what puts blades back into models with a suffix; windIO says best what is wrong."""
+    for row in every():
+        if row.put_back is not None and suffix in row.put_back.suffixes:
+            return row, row.put_back
+    return _way(YAML)

@@ -21,14 +21,12 @@ from bladegen.errors import BladegenError, ExportError, FileError, Finding
 from bladegen.formats.reading import read
 from bladegen.support.arrays import Array
 
-__all__ = ["GRID", "WHOLE", "compared", "proven", "put_in_place", "read_back", "taken_back"]
+__all__ = ["compared", "proven", "put_in_place", "read_back", "taken_back"]
 
 LANDMARKS = 201
 SPANS = 16  # at which sections are compared, besides the middles between stations
 MOST_SPANS = 60
 THIN = 4  # of the landmarks of the one blade, each is held against the other's section
-WHOLE = 5e-6  # m; formats with a grid for each quantity hold a blade to 1e-6, where they can
-GRID = 1.5e-3  # m; formats with one grid are within 0.3 or 0.5 mm of each quantity
 ANGLE = 1e-6  # rad; by more a twist may not be off without a word, beyond the format's tolerance
 Writing = Callable[[Path], tuple[Finding, ...]]
 

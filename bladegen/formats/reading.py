@@ -1,12 +1,7 @@
-"""Blade definitions from files: one module a format, one row in `FORMATS`.
+"""Blade definitions from files, in any format of the table in `registry`, and bundled blades."""
 
-A new format is a module with two functions: `recognises` tells its files from others of the
-same suffix, by a bounded look; `read` makes the definition and notes every problem of the file
-in `Notes`, so that a user hears of all of them at once.
-"""
-
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -14,15 +9,10 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.definition.plausibility import doubts
 from bladegen.errors import DefinitionError, FileError, Finding
 from bladegen.formats.common.document import Notes
-from bladegen.formats.hawc2 import reading as hawc2
-from bladegen.formats.numad import reading as numad
-from bladegen.formats.openfast import reading as openfast
-from bladegen.formats.qblade import reading as qblade
-from bladegen.formats.tables import reading as spanwise_table
-from bladegen.formats.windio import turbine_file
+from bladegen.formats.registry import FORMATS, Reader, every, plugins
 from bladegen.support.arguments import path_of, shown, suggestion
 
-__all__ = ["FORMATS", "SUFFIXES", "Format", "bundled", "holds_blade", "read"]
+__all__ = ["SUFFIXES", "bundled", "holds_blade", "is_read", "read"]
 
 RADIANS = ("windIO 1",)  # formats whose angles are in radians
 BY_AIRFOILS = Finding(
@@ -30,55 +20,9 @@ BY_AIRFOILS = Finding(
 )
 
 
-@dataclass(frozen=True)
-class Format:
-    """A file format.
-
-    Parameters
-    ----------
-    name : str
-        What it is called.
-    mark : str
-        What tells its files from others, in words.
-    suffixes : tuple of str
-        Of its files, lower case.
-    recognises : callable
-        Tells whether a file of one of the suffixes is of this format.
-    read : callable
-        From a file, the notes to make on it, and a folder of airfoil files for formats that
-        only name their airfoils (None: the format's own place) to the definition; None if
-        there are problems.  An unset `BladeDefinition.format` becomes `name`.
-    """
-
-    name: str
-    mark: str
-    suffixes: tuple[str, ...]
-    recognises: Callable[[Path], bool]
-    read: Callable[[Path, Notes, Path | None], BladeDefinition | None]
-
-
-FORMATS = (
-    Format(
-        "windIO",
-        turbine_file.MARK,
-        turbine_file.SUFFIXES,
-        turbine_file.recognises,
-        turbine_file.read,
-    ),
-    Format("OpenFAST", openfast.MARK, openfast.SUFFIXES, openfast.recognises, openfast.read),
-    Format("HAWC2", hawc2.MARK, hawc2.SUFFIXES, hawc2.recognises, hawc2.read),
-    Format("QBlade", qblade.MARK, qblade.SUFFIXES, qblade.recognises, qblade.read),
-    Format("NuMAD", numad.MARK, numad.SUFFIXES, numad.recognises, numad.read),
-    Format(
-        "spanwise table",
-        spanwise_table.MARK,
-        spanwise_table.SUFFIXES,
-        spanwise_table.recognises,
-        spanwise_table.read,
-    ),
-)
 FEW, MANY = 3, 1000  # files of a folder that are named, and looked at
-SUFFIXES = tuple(dict.fromkeys(suffix for row in FORMATS for suffix in row.suffixes))
+OWN = tuple(row.reader for row in FORMATS if row.reader is not None)
+SUFFIXES = tuple(dict.fromkeys(suffix for reader in OWN for suffix in reader.suffixes))
 
 
 def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefinition:
@@ -87,7 +31,8 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
     Parameters
     ----------
     source : str or Path
-        The name of a bundled blade (`bundled`), or a path to a file in one of `FORMATS`.
+        The name of a bundled blade (`bundled`), or a path to a file in one of the formats of
+        `registry`, of bladegen's own or of plug-ins.
     airfoils : str or Path, optional
         A folder of airfoil files, for formats that only name their airfoils.
 
@@ -105,15 +50,15 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
     path = _path(source)
     notes = Notes()
     try:
-        row = _recognised(path)
-        definition = row.read(path, notes, airfoils)
+        name, reader = _recognised(path)
+        definition = reader.read(path, notes, airfoils)
     except DefinitionError as error:
         raise FileError(str(source), [str(error)]) from None
     except FileError as error:
         raise FileError(str(source), error.problems) from None
     if definition is None or notes.problems:
         raise FileError(str(source), notes.shown())
-    known = definition.format or row.name
+    known = definition.format or name
     findings = (*definition.findings, *doubts(definition, radians=known in RADIANS))
     if definition.relative_thickness is None:
         findings += (BY_AIRFOILS,)
@@ -122,7 +67,8 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
 
 def holds_blade(path: Path) -> bool:
     """Tell whether a file looks like a blade's, by its suffix and a bounded look into it."""
-    return any(path.suffix.lower() in row.suffixes and row.recognises(path) for row in FORMATS)
+    own = path.suffix.lower()
+    return any(own in reader.suffixes and reader.recognises(path) for reader in OWN)
 
 
 def bundled() -> tuple[str, ...]:
@@ -153,9 +99,13 @@ def _path(source: str | Path) -> Path:
         kind = "is no regular file" if exists else "is neither a bundled blade nor a file"
         near = suggestion(source, names) or suggestion(path.stem, names) or _beside(path)
         raise FileError(str(source), [f"{kind}; bundled blades are {', '.join(names)}{near}"])
-    if path.suffix.lower() not in SUFFIXES:
+    if not is_read(path):
+        allowed = ", ".join(
+            dict.fromkeys(suffix for _, row in _readers() for suffix in row.suffixes)
+        )
         raise FileError(
-            str(source), [f"has the suffix {path.suffix!r}, allowed are {', '.join(SUFFIXES)}"]
+            str(source),
+            [f"has the suffix {path.suffix!r}, allowed are {allowed}{plugins().remark}"],
         )
     return path
 
@@ -181,11 +131,25 @@ def _blades(path: Path) -> list[str]:
     return [name for name in found if Path(name).suffix.lower() in SUFFIXES]
 
 
-def _recognised(path: Path) -> Format:
+def is_read(path: Path) -> bool:
+    """Tell whether files of a path's suffix are read."""
+    return any(path.suffix.lower() in reader.suffixes for _, reader in _readers())
+
+
+def _readers() -> Iterator[tuple[str, Reader]]:
+    """Give each format that is read, with its name; those of plug-ins last, and loaded late."""
+    yield from ((row.name, row.reader) for row in every() if row.reader is not None)
+
+
+def _recognised(path: Path) -> tuple[str, Reader]:
     """Return the first format of the file's suffix that recognises it."""
-    rows = [row for row in FORMATS if path.suffix.lower() in row.suffixes]
-    for row in rows:
-        if row.recognises(path):
-            return row
-    marks = " or ".join(f"{row.mark} ({row.name})" for row in rows)
-    raise FileError(str(path), [f"holds no blade that is known, must hold {marks}"])
+    marks = []
+    for name, reader in _readers():
+        if path.suffix.lower() in reader.suffixes:
+            if reader.recognises(path):
+                return name, reader
+            marks.append(f"{reader.mark} ({name})")
+    must = " or ".join(marks)
+    raise FileError(
+        str(path), [f"holds no blade that is known, must hold {must}{plugins().remark}"]
+    )

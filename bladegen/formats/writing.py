@@ -1,13 +1,6 @@
-"""Blade definitions to files: one module a format, one row in `FORMATS`.
+"""Blade definitions to files, in any format of the table in `registry`."""
 
-A new format is a function that writes a definition to a path and returns what the format cannot
-hold, and a row that says what it is called and by which suffixes it is meant.  A format of one
-file writes it through `files.replacing`; one of several files writes its main file to the path,
-and the others beside it, under names that start with the main file's.
-"""
-
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -15,18 +8,15 @@ from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.definition.estimates import available, with_polars
 from bladegen.errors import ExportError, Finding
-from bladegen.formats.airfoils import writing as airfoil_files
+from bladegen.formats import registry
 from bladegen.formats.airfoils.writing import write_airfoil
 from bladegen.formats.common.redefinition import redefined
-from bladegen.formats.hawc2 import writing as hawc2
-from bladegen.formats.openfast import writing as openfast
-from bladegen.formats.proof import GRID, WHOLE, proven
-from bladegen.formats.tables import writing as spanwise_table
-from bladegen.formats.windio import version1, version2
+from bladegen.formats.proof import proven
+from bladegen.formats.registry import Writer
 from bladegen.support.arguments import instance, path_of, suggestion
 from bladegen.support.files import require_suffix
 
-__all__ = ["FORMATS", "Format", "format_of", "prepared", "write", "write_airfoil"]
+__all__ = ["FORMATS", "format_of", "prepared", "write", "write_airfoil"]
 
 
 MIRRORED = (
@@ -35,50 +25,7 @@ MIRRORED = (
 )
 
 
-@dataclass(frozen=True)
-class Format:
-    """A file format.
-
-    Parameters
-    ----------
-    name : str
-        By which it is asked for: one word, lower case.
-    title : str
-        What it is called.
-    suffixes : tuple of str
-        Of its files, lower case, "" for a folder; the first row with a suffix is meant by it.
-    write : callable
-        From a definition and a path to what the format cannot hold.
-    polars : bool
-        Whether it holds polars.
-    tolerance : float, optional
-        How far a blade may be off that is read back [m] without a finding; None for formats that
-        hold no blade.
-    """
-
-    name: str
-    title: str
-    suffixes: tuple[str, ...]
-    write: Callable[[BladeDefinition, Path], tuple[Finding, ...]]
-    polars: bool = False
-    tolerance: float | None = WHOLE
-
-
-FORMATS = (
-    Format("windio2", "windIO 2", (".yaml", ".yml"), version2.write, polars=True),
-    Format("windio1", "windIO 1", (".yaml", ".yml"), version1.write, polars=True),
-    Format("openfast", "OpenFAST (AeroDyn blade)", (".dat",), openfast.write, True, GRID),
-    Format("hawc2", "HAWC2", (".htc",), hawc2.write, True, GRID),
-    Format("csv", "spanwise table (CSV)", (".csv",), spanwise_table.write),
-    Format("xlsx", "spanwise table (IEA workbook)", (".xlsx",), spanwise_table.write, False, GRID),
-    *(
-        Format(name, f"a folder of airfoil files ({name.title()})", ("",), write, False, None)
-        for name, write in (
-            ("selig", airfoil_files.write_selig),
-            ("lednicer", airfoil_files.write_lednicer),
-        )
-    ),
-)
+FORMATS = tuple(writer for row in registry.FORMATS for writer in row.writers)
 
 
 def write(
@@ -99,7 +46,7 @@ def write(
     path : str or Path
         Where to; an existing file is replaced once the new one is whole.
     format : str, optional
-        The name of one of `FORMATS`; by the path's suffix if not given.
+        The name of a way to write, such as "windio1"; by the path's suffix if not given.
     polars : str, optional
         One of `estimates.POLICIES`.  By default those of a perturbed blade are estimated where
         NeuralFoil is installed, and all others kept as they are.
@@ -155,7 +102,7 @@ def prepared(
     return definition, made + said
 
 
-def format_of(path: Path, name: str | None = None) -> Format:
+def format_of(path: Path, name: str | None = None) -> Writer:
     """Return the format of a name, or without one the format that a path's suffix means.
 
     Raises
@@ -165,20 +112,28 @@ def format_of(path: Path, name: str | None = None) -> Format:
     """
     if name is not None:
         instance(name, str, "format", "a format's name", ExportError)
-    known = dict.fromkeys(suffix for row in FORMATS for suffix in row.suffixes if suffix)
-    for row in FORMATS:
-        if row.name == name and row.suffixes == ("",) and path.suffix.lower() in known:
+    own = {suffix for writer in FORMATS for suffix in writer.suffixes if suffix}
+    for writer in _writers():
+        folder = writer.suffixes == ("",)
+        if writer.name == name and folder and path.suffix.lower() in own:
             raise ExportError(f"{path}: {name} is a folder of files, such as {path.stem}")
-        if row.name == name and row.suffixes != ("",):
-            require_suffix(path, row.suffixes)
-        if row.name == name or (name is None and path.suffix.lower() in row.suffixes):
-            return row
+        if writer.name == name and not folder:
+            require_suffix(path, writer.suffixes)
+        if writer.name == name or (name is None and path.suffix.lower() in writer.suffixes):
+            return writer
     if name is not None:
-        names = ", ".join(row.name for row in FORMATS)
-        near = suggestion(name, [row.name for row in FORMATS])
-        raise ExportError(f"format: got {name!r}, allowed are {names}{near}")
-    suffixes = ", ".join(known)
+        names = [writer.name for writer in _writers()]
+        near = suggestion(name, names)
+        raise ExportError(
+            f"format: got {name!r}, allowed are {', '.join(names)}{near}{registry.plugins().remark}"
+        )
+    known = dict.fromkeys(s for writer in _writers() for s in writer.suffixes if s)
     raise ExportError(
-        f"{path}: suffix {path.suffix!r}, allowed are {suffixes}, or none for "
-        "a folder of airfoil files"
+        f"{path}: suffix {path.suffix!r}, allowed are {', '.join(known)}, or none for "
+        f"a folder of airfoil files{registry.plugins().remark}"
     )
+
+
+def _writers() -> Iterator[Writer]:
+    """Give each way to write; those of plug-ins last, and loaded late."""
+    yield from (writer for row in registry.every() for writer in row.writers)

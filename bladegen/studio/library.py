@@ -24,14 +24,14 @@ from bladegen.formats.openfast import reading as openfast
 from bladegen.formats.openfast.model import PART_SUFFIX
 from bladegen.formats.qblade import reading as qblade
 from bladegen.formats.reading import SUFFIXES, bundled, holds_blade, read
-from bladegen.formats.windio import turbine_file
+from bladegen.formats.registry import FORMATS
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.model import Baseline
 from bladegen.support.files import safe_stem
 
 __all__ = ["UPLOADS", "UPLOAD_BYTES", "UPLOAD_FILES", "Entry", "Library"]
 
-WHOLE = turbine_file.SUFFIXES  # formats that name no other files
+WHOLE = {s for row in FORMATS if row.alone and row.reader for s in row.reader.suffixes}
 UPLOADS = tuple(dict.fromkeys([*SUFFIXES, *airfoil_files.SUFFIXES, qblade.POLAR_FILES]))
 UPLOAD_BYTES = 8 * 2**20  # of a blade's files together; the largest windIO example has 0.7 MB
 UPLOAD_FILES = 500  # the IEA 15 MW from HAWC2 or OpenFAST comes in 100 to 140

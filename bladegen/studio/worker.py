@@ -16,7 +16,10 @@ from zipfile import ZIP_DEFLATED, ZipFile
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import BladegenError, StudioError, ToleranceError
-from bladegen.exports.exporters import FORMATS, Options, Products, aside, write
+from bladegen.exports import registry
+from bladegen.exports.exporters import aside, write
+from bladegen.exports.options import Options
+from bladegen.exports.products import Products
 from bladegen.formats.reading import read
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.model import Baseline
@@ -68,7 +71,8 @@ class Made:
 
 def formats() -> dict[str, str]:
     """Return what can be written, by suffix: the usual ones first, each format once."""
-    known = {s: f.description for s, f in FORMATS.items() if not f.description.startswith(ALIAS)}
+    rows = registry.formats().items()
+    known = {s: row.description for s, row in rows if not row.description.startswith(ALIAS)}
     order = [s for s in FIRST if s in known] + [s for s in known if s not in FIRST]
     return {suffix: known[suffix] for suffix in order}
 

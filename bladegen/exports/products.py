@@ -1,0 +1,67 @@
+"""What a blade's files are made from: its solid, its mesh, its grid, each made once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+from bladegen.blade.blade import Blade
+from bladegen.cad import solids
+from bladegen.errors import Finding
+from bladegen.exports import marks
+from bladegen.exports.options import Kind, Options
+from bladegen.exports.provenance import Provenance, made_from
+from bladegen.surface import grid, mesh
+
+__all__ = ["Products"]
+
+
+@dataclass(frozen=True, eq=False)
+class Products:
+    """What a blade's files are made from, each made once and when first asked for."""
+
+    blade: Blade
+    options: Options = field(default_factory=Options)
+    progress: Callable[[str], None] = lambda _: None
+    remarks: list[Finding] = field(default_factory=list)  # what a format cannot hold
+
+    @cached_property
+    def solid(self) -> solids.Solid:
+        """The closed solid."""
+        return solids.solid(
+            self.blade,
+            tolerance=self.options.tolerance,
+            sections=self.options.sections,
+            spans=self.options.spans,
+            tip=self.options.tip,
+            progress=self.progress,
+        )
+
+    @cached_property
+    def mesh(self) -> mesh.TriangleMesh:
+        """The triangle mesh."""
+        self.progress("meshing")
+        return mesh.from_blade(self.blade, stations=self.options.stations, tip=self.options.tip)
+
+    @cached_property
+    def grid(self) -> grid.Grid:
+        """The structured grid."""
+        self.progress("making the grid")
+        return grid.from_blade(self.blade, self.options.spacing, self.options.tip)
+
+    def made_from(self, kind: Kind, suffix: str) -> Provenance:
+        """Return what a file of a kind and suffix is made from."""
+        options = self.options
+        return replace(
+            self._provenance,
+            settings=self._provenance.settings + tuple(options.settings(kind, suffix).items()),
+            id="",
+        )
+
+    @cached_property
+    def _provenance(self) -> Provenance:
+        return made_from(self.blade, {}, self.options.command)
+
+    def mark(self, path: Path, kind: Kind, suffix: str) -> None:
+        """Write what a file is made from into it, where its format has a place for it."""
+        marks.put(path, self.made_from(kind, suffix))

@@ -1,0 +1,255 @@
+"""All formats of blade files: one row each, with everything that bladegen can do with it.
+
+A new format is a package beside the others and one row in `FORMATS`; a package of somebody else
+offers its rows by the entry point ``bladegen.readers``.  Formats of bladegen's own come first
+wherever one is looked for, so that no plug-in can take the place of one.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.errors import DefinitionError, ExportError, Finding
+from bladegen.formats.airfoils.writing import write_lednicer, write_selig
+from bladegen.formats.common.document import Notes
+from bladegen.formats.hawc2 import reading as hawc2
+from bladegen.formats.hawc2.into import write_into_htc
+from bladegen.formats.hawc2.writing import write as write_hawc2
+from bladegen.formats.numad import reading as numad
+from bladegen.formats.openfast import reading as openfast
+from bladegen.formats.openfast.into import write_into_main
+from bladegen.formats.openfast.writing import write as write_openfast
+from bladegen.formats.qblade import reading as qblade
+from bladegen.formats.tables import reading as tables
+from bladegen.formats.tables.writing import write as write_table
+from bladegen.formats.windio import turbine_file as windio
+from bladegen.formats.windio import version1, version2
+from bladegen.formats.windio.into import write_into_turbine
+from bladegen.support.plugins import Offered, guarded, offered
+
+__all__ = [
+    "FORMATS",
+    "GROUP",
+    "Format",
+    "PutBack",
+    "Reader",
+    "Writer",
+    "every",
+    "plugged",
+    "plugins",
+]
+
+GROUP = "bladegen.readers"  # of entry points
+WHOLE = 5e-6  # m; formats with a grid for each quantity hold a blade to 1e-6, where they can
+GRID = 1.5e-3  # m; formats with one grid are within 0.3 or 0.5 mm of each quantity
+
+
+@dataclass(frozen=True)
+class Reader:
+    """How a format is read.
+
+    Parameters
+    ----------
+    suffixes : tuple of str
+        Of its files, lower case, with their dots.
+    mark : str
+        What tells its files from others, in words.
+    recognises : callable
+        Tells by a bounded look whether a file of one of the suffixes is of this format.
+    read : callable
+        From a file, the notes to make on it (`Notes`), and a folder of airfoil files for formats
+        that only name their airfoils (None: the format's own place) to the definition; None if
+        there are problems, which the notes then hold, all of them.  An unset
+        `BladeDefinition.format` becomes the format's name.
+    """
+
+    suffixes: tuple[str, ...]
+    mark: str
+    recognises: Callable[[Path], bool]
+    read: Callable[[Path, Notes, Path | None], BladeDefinition | None]
+
+    def __post_init__(self) -> None:
+        _require_suffixes(self.suffixes, self.mark)
+
+
+@dataclass(frozen=True)
+class Writer:
+    """A way to write a format.
+
+    Parameters
+    ----------
+    name : str
+        By which it is asked for: one word, lower case.
+    title : str
+        What it is called.
+    suffixes : tuple of str
+        Of its files, lower case, "" for a folder; the first way with a suffix is meant by it.
+    write : callable
+        From a definition and a path to what the format cannot hold.  A format of one file writes
+        it through `files.replacing`; one of several writes its main file to the path, and the
+        others beside it, under names that start with the main file's.
+    polars : bool
+        Whether it holds polars.
+    tolerance : float, optional
+        How far a blade may be off that is read back [m] without a finding; None for formats that
+        hold no blade.
+    """
+
+    name: str
+    title: str
+    suffixes: tuple[str, ...]
+    write: Callable[[BladeDefinition, Path], tuple[Finding, ...]]
+    polars: bool = False
+    tolerance: float | None = WHOLE
+
+    def __post_init__(self) -> None:
+        if self.suffixes != ("",):
+            _require_suffixes(self.suffixes, self.name)
+
+
+@dataclass(frozen=True)
+class PutBack:
+    """How a blade is put back into a full model of a tool.
+
+    Parameters
+    ----------
+    suffixes : tuple of str
+        Of the models, lower case, with their dots.
+    write : callable
+        From a definition, the model and a path: writes the model with its blade replaced and
+        everything else as it is, and returns what it cannot hold.
+    tolerance : float
+        How far a blade may be off that is read back [m] without a finding.
+    """
+
+    suffixes: tuple[str, ...]
+    write: Callable[[BladeDefinition, Path, Path], tuple[Finding, ...]]
+    tolerance: float = WHOLE
+
+    def __post_init__(self) -> None:
+        _require_suffixes(self.suffixes, "put_back")
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    reader : Reader, optional
+        How it is read, if it is.
+    writers : tuple of Writer
+        The ways to write it: versions, layouts, kinds of file.
+    put_back : PutBack, optional
+        How a blade is put back into a model.
+    alone : bool
+        Whether a file of it names no others, so that it can be written elsewhere and read there.
+    """
+
+    name: str
+    reader: Reader | None = None
+    writers: tuple[Writer, ...] = ()
+    put_back: PutBack | None = None
+    alone: bool = False
+
+
+def _require_suffixes(suffixes: tuple[str, ...], name: str) -> None:
+    """Raise unless suffixes are as those of files are looked for."""
+    wrong = [one for one in suffixes if one[:1] != "." or one != one.lower()]
+    if isinstance(suffixes, str) or wrong or not suffixes:
+        raise DefinitionError(
+            f"{name}: suffixes: got {suffixes!r}, must be a tuple such as ('.toy',), lower case"
+        )
+
+
+FORMATS = (
+    Format(
+        "windIO",
+        Reader(windio.SUFFIXES, windio.MARK, windio.recognises, windio.read),
+        (
+            Writer("windio2", "windIO 2", (".yaml", ".yml"), version2.write, polars=True),
+            Writer("windio1", "windIO 1", (".yaml", ".yml"), version1.write, polars=True),
+        ),
+        put_back=PutBack((".yaml", ".yml"), write_into_turbine),
+        alone=True,
+    ),
+    Format(
+        "OpenFAST",
+        Reader(openfast.SUFFIXES, openfast.MARK, openfast.recognises, openfast.read),
+        (Writer("openfast", "OpenFAST (AeroDyn blade)", (".dat",), write_openfast, True, GRID),),
+        put_back=PutBack((".dat",), write_into_main, GRID),
+    ),
+    Format(
+        "HAWC2",
+        Reader(hawc2.SUFFIXES, hawc2.MARK, hawc2.recognises, hawc2.read),
+        (Writer("hawc2", "HAWC2", (".htc",), write_hawc2, True, GRID),),
+        put_back=PutBack((".htc",), write_into_htc, GRID),
+    ),
+    Format("QBlade", Reader(qblade.SUFFIXES, qblade.MARK, qblade.recognises, qblade.read)),
+    Format("NuMAD", Reader(numad.SUFFIXES, numad.MARK, numad.recognises, numad.read)),
+    Format(
+        "spanwise table",
+        Reader(tables.SUFFIXES, tables.MARK, tables.recognises, tables.read),
+        (
+            Writer("csv", "spanwise table (CSV)", (".csv",), write_table),
+            Writer("xlsx", "spanwise table (IEA workbook)", (".xlsx",), write_table, False, GRID),
+        ),
+    ),
+    Format(
+        "airfoil files",
+        writers=tuple(
+            Writer(name, f"a folder of airfoil files ({name.title()})", ("",), write, False, None)
+            for name, write in (("selig", write_selig), ("lednicer", write_lednicer))
+        ),
+    ),
+)
+
+
+def every() -> Iterator[Format]:
+    """Give the formats one after the other; plug-ins are loaded once all own ones were passed."""
+    yield from FORMATS
+    yield from (row for _, row in plugged())
+
+
+@cache
+def plugged() -> tuple[tuple[str, Format], ...]:
+    """Return the formats that packages of others offer, each with the name of its entry point."""
+    return tuple((name, _guarded(row, name)) for name, row in plugins().rows)
+
+
+def plugins() -> Offered:
+    """Return what packages of others offer as it is, and what is wrong with it."""
+    return offered(GROUP, Format)
+
+
+def _guarded(row: Format, name: str) -> Format:
+    """Return a plug-in's row, whose functions raise nothing but errors of one line."""
+    reader, put_back = row.reader, row.put_back
+    if reader is not None:
+        reader = replace(
+            reader,
+            recognises=guarded(reader.recognises, name, DefinitionError),
+            read=guarded(_checked(reader), name, DefinitionError),
+        )
+    if put_back is not None:
+        put_back = replace(put_back, write=guarded(put_back.write, name, ExportError))
+    writers = tuple(
+        replace(way, write=guarded(way.write, name, ExportError)) for way in row.writers
+    )
+    return replace(row, reader=reader, writers=writers, put_back=put_back)
+
+
+def _checked(reader: Reader) -> Callable[[Path, Notes, Path | None], BladeDefinition | None]:
+    """Return a plug-in's way to read, which must return a definition or note a problem."""
+
+    def read(path: Path, notes: Notes, airfoils: Path | None) -> BladeDefinition | None:
+        found = reader.read(path, notes, airfoils)
+        if not (isinstance(found, BladeDefinition) or notes.problems):
+            raise TypeError(f"read: got {found!r}, must be a BladeDefinition, or note a problem")
+        return found
+
+    return read

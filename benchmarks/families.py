@@ -32,7 +32,7 @@ from bladegen.exports.options import Options
 from bladegen.exports.products import Products
 from bladegen.families.family import BLOCK
 from bladegen.families.run import Order, run
-from bladegen.surface import net
+from bladegen.surface import fitting
 
 THREADS = 2
 RUNS = 7
@@ -114,7 +114,7 @@ def write_steps(
     """Print what STEP files of variants take; the baseline's is made first, and not counted."""
     products = Products(blade, Options())
     exporters.write(products, target)
-    spans = net.fitted(blade, products.options.tolerance)[0].v
+    spans = fitting.fitted(blade, products.options.tolerance)[0].v
     options = Options(spans=spans)
     clock, processor, off, missed = [], [], [], 0
     with threadpool_limits(1):  # as a family's processes do

@@ -15,7 +15,7 @@ import numpy as np
 from figures import asked, figure
 
 import bladegen as bg
-from bladegen.cad import solids
+from bladegen.cad import shapes, solids
 from bladegen.surface.mesh import TriangleMesh
 from bladegen.surface.tips import flat_tip, round_tip
 
@@ -59,7 +59,7 @@ def measure(case: str, path: Path, size: float, solid: solids.Solid) -> None:
         faces.append(place[nodes.astype(int)].reshape(-1, 3))
         worst.append(float(np.min(gmsh.model.mesh.getElementQualities(elements, "gamma"))))
     gmsh.finalize()
-    made = TriangleMesh(points.reshape(-1, 3) / solids.MILLIMETRES, np.concatenate(faces))
+    made = TriangleMesh(points.reshape(-1, 3) / shapes.MILLIMETRES, np.concatenate(faces))
     edges = np.sort(np.concatenate([made.faces[:, [i, (i + 1) % 3]] for i in range(3)]))
     _, times = np.unique(edges, axis=0, return_counts=True)
     for what, value, unit in (

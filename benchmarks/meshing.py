@@ -25,7 +25,7 @@ from bladegen.exports import exporters
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
 from bladegen.measures import properties
-from bladegen.surface import grid, mesh
+from bladegen.surface import grid, mesh_files
 
 RUNS = 3
 STATIONS = (50, 100, 300, 900)
@@ -56,7 +56,7 @@ def measured(path: Path, scale: float, blade: bg.Blade) -> tuple[int, float, flo
     """Return a file's triangles, largest distance [mm], volume's error, and closedness."""
     import pyvista as pv
 
-    made = mesh.read(path)
+    made = mesh_files.read(path)
     made.apply_scale(scale)
     rng = np.random.default_rng(11)
     half = np.sort(rng.uniform(0.0, 0.5, PLACES // 2))

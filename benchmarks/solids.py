@@ -28,7 +28,7 @@ from scipy.spatial import cKDTree
 
 import bladegen as bg
 from bladegen.airfoils.landmarks import landmark_parameters
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes, solids
 
 TOLERANCES = (3.0, 1.0, 0.3, 0.1, 0.05)  # mm
 SECTIONS = (20, 40, 80, 160)
@@ -132,7 +132,7 @@ def work(contender: str) -> None:
             if asked["measure"]:
                 row["mm"] = distance_mm(blade, shape)
                 row["MB"] = path.stat().st_size / 1e6
-                row["valid"] = float(solids.is_valid(shape))
+                row["valid"] = float(shapes.is_valid(shape))
             print("\n" + json.dumps(row), flush=True)
 
 

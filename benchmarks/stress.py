@@ -33,7 +33,7 @@ from figures import parser as arguments
 import bladegen as bg
 from bladegen.airfoils.crossing import crossing_sections
 from bladegen.blade import edges
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes, solids
 from bladegen.errors import BladegenError, PerturbationError
 from bladegen.measures import checks, properties
 from bladegen.surface.tips import Tip, flat_tip, round_tip
@@ -102,10 +102,10 @@ def measured(number: int, seed: int, space: bg.ShapeSpace, folder: Path) -> dict
     try:
         solid = solids.solid(blade, tolerance=tolerance, tip=tip)
         exchange.write_step(solid, path)
-        before = solids.quick_volume(solid.shape) / solids.MILLIMETRES**3
+        before = shapes.quick_volume(solid.shape) / shapes.MILLIMETRES**3
         off = before / solid.net.volume() - 1.0
         if abs(off) >= OCCT:  # twisted blades ask for the slower rule
-            off = solids.volume(solid.shape) / solids.MILLIMETRES**3 / solid.net.volume() - 1.0
+            off = shapes.volume(solid.shape) / shapes.MILLIMETRES**3 / solid.net.volume() - 1.0
         figures = checks.solid_figures(exchange.read_step(path), quick=True)
         profiles = blade.trailing_edge(blade.profiles(SPANS), blade.chord(SPANS))
     except BladegenError as error:

@@ -101,9 +101,9 @@ def good(suffix: str) -> tuple[bytes, ...]:
         path = Path(folder) / f"blade{suffix}"
         blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=21)
         if suffix == ".off":
-            from bladegen.surface import mesh
+            from bladegen.surface import mesh, mesh_files
 
-            mesh.to_trimesh(mesh.from_blade(blade, stations=14)).export(path)
+            mesh_files.to_trimesh(mesh.from_blade(blade, stations=14)).export(path)
             return (path.read_bytes(),)
         bg.export(
             blade, path, **({"sections": 14} if suffix in foreign.SOLIDS else {"stations": 14})

@@ -3,7 +3,7 @@ import json
 import pytest
 
 import bladegen as bg
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.exports.build import build, report_path
 from bladegen.exports.options import Options
@@ -70,7 +70,7 @@ def test_the_volume_in_the_report_is_that_of_the_solid_with_its_tip(tmp_path):
     report = build(blade, tmp_path, formats=["step"], options=options)
     solid = report["solid"]
     assert abs(solid["volume_against_sections"]) < 1e-5  # up to the last section
-    by_occt = solids.volume(exchange.read(tmp_path / "nrel5mw.step")) / 1e9
+    by_occt = shapes.volume(exchange.read(tmp_path / "nrel5mw.step")) / 1e9
     assert solid["tip_volume_m3"] > 5e-5 * solid["volume_m3"]
     assert abs(by_occt / solid["volume_m3"] - 1) < 5e-6
 
@@ -92,8 +92,8 @@ def test_grids_are_measured_in_the_report(tmp_path):
 
 def test_a_missed_tolerance_is_said_and_the_rest_is_made(tmp_path, monkeypatch):
     blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
-    monkeypatch.setattr("bladegen.surface.net.MAX_SECTIONS", 20)
-    monkeypatch.setattr("bladegen.surface.net.FIRST_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.fitting.MAX_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.fitting.FIRST_SECTIONS", 20)
     with pytest.raises(ToleranceError):
         build(blade, tmp_path, formats=["step", "stl"], options=Options(tolerance=1e-5))
     names = {path.name for path in tmp_path.iterdir()}

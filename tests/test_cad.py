@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven, Sharp
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes, solids
 from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import CadError
 from bladegen.formats.reading import bundled, read
@@ -52,7 +52,7 @@ def test_the_file_is_one_valid_closed_solid_with_the_same_volume(solid, step):
     assert figures["valid"]
     assert figures["closed"]
     assert figures["faces"] == 5
-    before = solids.quick_volume(solid.shape) * 1e-9
+    before = shapes.quick_volume(solid.shape) * 1e-9
     assert_allclose(figures["volume_m3"], before, rtol=1e-9)
 
 
@@ -94,8 +94,8 @@ def test_volumes_agree(blade, solid):
     by_sections = properties.volume(blade)
     assert_allclose(solid.net.volume(), by_sections, rtol=3e-6)
     assert solid.volume == solid.net.volume()
-    assert_allclose(solids.volume(solid.shape) / 1e9, by_sections, rtol=1e-5)
-    assert_allclose(solid.area, solids.area(solid.shape) / 1e6, rtol=1e-12)
+    assert_allclose(shapes.volume(solid.shape) / 1e9, by_sections, rtol=1e-5)
+    assert_allclose(solid.area, shapes.area(solid.shape) / 1e6, rtol=1e-12)
 
 
 def test_ends_are_planes(solid):
@@ -117,7 +117,7 @@ def test_a_round_tip_leaves_one_valid_solid_and_adds_volume(coarse, solid):
     assert figures["area_m2"] > flat["area_m2"]
     assert figures["bounds_m"][1][2] > flat["bounds_m"][1][2]
     assert rounded.tip_volume > 0 == solid.tip_volume
-    assert_allclose(rounded.volume, solids.volume(rounded.shape) / 1e9, rtol=5e-6)
+    assert_allclose(rounded.volume, shapes.volume(rounded.shape) / 1e9, rtol=5e-6)
 
 
 @pytest.mark.nightly  # the exact volumes of the bundled blades are tested on every run
@@ -134,7 +134,7 @@ def test_occt_finds_the_exact_volume_of_a_twisted_variant():
         allow_odd=True,
     )
     made = solids.solid(variant, tolerance=1e-3)
-    assert_allclose(solids.volume(made.shape) / 1e9, made.volume, rtol=1e-5)
+    assert_allclose(shapes.volume(made.shape) / 1e9, made.volume, rtol=1e-5)
 
 
 def test_a_sharp_edge_is_sewn_without_a_strip(coarse):

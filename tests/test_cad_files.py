@@ -4,11 +4,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from bladegen.blade.blade import Blade
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes, solids
+from bladegen.cad.triangles import triangulated
 from bladegen.errors import CadError
 from bladegen.formats.reading import read
 from bladegen.measures import checks
-from bladegen.surface import mesh
+from bladegen.surface import mesh_files
 
 
 @pytest.fixture(scope="module")
@@ -33,8 +34,8 @@ def test_solids_are_read_again_whole(solid, tmp_path, suffix):
     assert figures["valid"]
     assert figures["closed"]
     assert figures["one_solid"]
-    again = solids.quick_volume(shape)
-    assert_allclose(again, solids.quick_volume(solid.shape), rtol=1e-6)
+    again = shapes.quick_volume(shape)
+    assert_allclose(again, shapes.quick_volume(solid.shape), rtol=1e-6)
 
 
 @BOTH
@@ -55,8 +56,8 @@ def test_the_schema_is_what_was_asked_for(solid, tmp_path):
 
 
 def test_triangles_of_a_shape_lie_on_it(solid):
-    triangles = exchange.triangulated(solid.shape, 0.002)
-    welded = mesh.to_trimesh(triangles)
+    triangles = triangulated(solid.shape, 0.002)
+    welded = mesh_files.to_trimesh(triangles)
     welded.merge_vertices()
     assert_allclose(welded.volume, solid.net.volume(), rtol=1e-3)
     low, high = triangles.vertices.min(axis=0), triangles.vertices.max(axis=0)

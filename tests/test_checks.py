@@ -9,7 +9,7 @@ from bladegen.blade.edges import AsGiven, MinimumThickness
 from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import BladegenError, FileError
 from bladegen.measures import checks
-from bladegen.surface import mesh
+from bladegen.surface import mesh, mesh_files
 
 pytestmark = pytest.mark.usefixtures("foreign_here")
 
@@ -145,7 +145,7 @@ def test_mesh_files_are_measured(blade, suffix, tmp_path):
 def test_broken_meshes_are_problems(blade, spoil, problem, tmp_path):
     made = mesh.from_blade(blade, stations=20)
     broken = mesh.TriangleMesh(made.vertices, spoil(np.array(made.faces)))
-    mesh.to_trimesh(broken).export(tmp_path / "broken.ply")
+    mesh_files.to_trimesh(broken).export(tmp_path / "broken.ply")
     assert problem in checks.check_file(tmp_path / "broken.ply").problems
 
 

@@ -11,11 +11,11 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.edges import Sharp
 from bladegen.cad import solids
 from bladegen.formats.reading import bundled, read
-from bladegen.surface import ends, net
+from bladegen.surface import deviation, ends, fitting, net
 from bladegen.surface.tips import flat_tip, on_arcs, round_tip
 
 BLADE = Blade.from_definition(read("dtu10mw"), landmarks=101)
-NET, DEVIATION = net.fitted(BLADE, 1e-3)
+NET, DEVIATION = fitting.fitted(BLADE, 1e-3)
 SHIFT = 2e-3
 
 
@@ -39,7 +39,7 @@ def test_every_face_of_a_solid_is_measured(name, tip):
 
 def test_a_trailing_edge_that_lies_too_far_aft_is_seen_on_its_strip():
     off = moved([0, -1], slice(None), np.array([0.0, SHIFT, 0.0]))
-    before, after = DEVIATION.faces, net.deviation(off, BLADE).faces
+    before, after = DEVIATION.faces, deviation.deviation(off, BLADE).faces
     assert before["trailing edge"].maximum < 1e-3
     assert after["trailing edge"].maximum > 0.9 * SHIFT
 
@@ -71,7 +71,7 @@ def test_a_round_tip_of_another_size_is_seen():
 
 def test_a_sharp_edge_has_no_strip():
     sharp = replace(BLADE, trailing_edge=Sharp())
-    fitted, deviation = net.fitted(sharp, 1e-3, sections=40)
+    fitted, deviation = fitting.fitted(sharp, 1e-3, sections=40)
     assert "trailing edge" not in deviation.faces
     assert fitted.v[0] == 0.0
 

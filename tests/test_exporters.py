@@ -4,13 +4,13 @@ import pyvista
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes
 from bladegen.errors import ExportError, SizeError, ToleranceError
 from bladegen.exports import exporters
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.products import Products
 from bladegen.exports.registry import FORMATS, Format
-from bladegen.surface import mesh
+from bladegen.surface import mesh, mesh_files
 from bladegen.surface.grid import Spacing
 from bladegen.surface.tips import flat_tip, round_tip
 
@@ -31,8 +31,8 @@ def read(path):
     """A mesh file as vertices and faces, VTP by pyvista and others by trimesh."""
     if path.suffix == ".vtp":
         data = pyvista.read(path)
-        return mesh.to_trimesh(mesh.TriangleMesh(data.points, data.regular_faces))
-    return mesh.read(path)
+        return mesh_files.to_trimesh(mesh.TriangleMesh(data.points, data.regular_faces))
+    return mesh_files.read(path)
 
 
 @pytest.mark.parametrize("suffix", MESHES)
@@ -119,12 +119,12 @@ def test_a_round_tip_is_on_meshes_and_grids_alike(blade):
 
 def test_step_by_suffix(blade, tmp_path):
     path = bg.export(blade, tmp_path / "blade.stp", sections=40)
-    assert solids.is_valid(exchange.read_step(path))
+    assert shapes.is_valid(exchange.read_step(path))
 
 
 def test_a_solid_that_misses_its_tolerance_is_kept_aside(blade, tmp_path, monkeypatch):
-    monkeypatch.setattr("bladegen.surface.net.MAX_SECTIONS", 20)
-    monkeypatch.setattr("bladegen.surface.net.FIRST_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.fitting.MAX_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.fitting.FIRST_SECTIONS", 20)
     with pytest.raises(ToleranceError, match=r"mm off the blade .* allowed is 0.01 mm; kept as"):
         bg.export(blade, tmp_path / "blade.step", tolerance=1e-5)
     assert [p.name for p in tmp_path.iterdir()] == ["blade.out-of-tolerance.step"]

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from processes import children, gone_within
 
 import bladegen as bg
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes
 from bladegen.errors import BladegenError, PerturbationError
 from bladegen.exports.options import Options
 from bladegen.families.family import BLOCK
@@ -23,7 +23,7 @@ from bladegen.families.run import Order, run
 from bladegen.measures import checks
 from bladegen.measures.properties import volume
 from bladegen.support.files import digest_of
-from bladegen.surface import mesh
+from bladegen.surface import mesh_files
 
 SPANS = 16
 COUNT = 3 * BLOCK + 9
@@ -295,11 +295,13 @@ def test_files_of_each_variant_are_written_and_listed(tmp_path):
     for place, name in enumerate(table["step_file"]):
         path = tmp_path / "one" / name
         assert table["step_sha256"][place] == digest_of(path)
-        assert solids.is_valid(exchange.read_step(path))
-        figures = checks.mesh_figures(mesh.read(path.with_suffix(".stl")))
+        assert shapes.is_valid(exchange.read_step(path))
+        figures = checks.mesh_figures(mesh_files.read(path.with_suffix(".stl")))
         assert figures["watertight"]
         assert_allclose(
-            mesh.read(path.with_suffix(".stl")).volume, volume(family.variant(place)), rtol=1e-3
+            mesh_files.read(path.with_suffix(".stl")).volume,
+            volume(family.variant(place)),
+            rtol=1e-3,
         )
     run(Order(family, tmp_path / "two", ("step", "stl"), options=COARSE))
     assert (tmp_path / "one" / "manifest.parquet").read_bytes() == (

@@ -18,7 +18,7 @@ from numpy.testing import assert_allclose
 from bladegen.errors import BladegenError, CadError, FileError
 from bladegen.measures import checks, foreign, foreign_reader
 from bladegen.measures.foreign import Answer, packed, unpacked
-from bladegen.surface import mesh
+from bladegen.surface import mesh_files
 from bladegen.views import comparison
 
 
@@ -229,11 +229,11 @@ def test_files_beyond_all_use_are_refused(tmp_path, monkeypatch):
 )
 def test_triangles_of_a_file_are_looked_at(vertices, faces, said):
     with pytest.raises(FileError, match=said):
-        mesh.sound(Path("a.ply"), np.array(vertices, float), np.array(faces))
+        mesh_files.sound(Path("a.ply"), np.array(vertices, float), np.array(faces))
 
 
 def test_no_file_beside_a_mesh_is_opened(tmp_path, monkeypatch):
     path = tmp_path / "a.obj"
     path.write_text(f"mtllib {tmp_path}/secret\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     os.mkfifo(tmp_path / "secret")  # who opens it waits for ever
-    assert len(mesh.read(path).faces) == 1
+    assert len(mesh_files.read(path).faces) == 1

@@ -9,7 +9,7 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import GeometryError
 from bladegen.formats.reading import bundled, read
-from bladegen.surface import mesh
+from bladegen.surface import mesh, mesh_files
 from bladegen.surface.tips import flat_tip, on_arcs, round_tip
 from strategies import SEEDS, definitions, ellipse
 
@@ -159,12 +159,12 @@ def test_the_default_is_a_quarter_of_a_million_triangles():
 @pytest.mark.parametrize("name", bundled())
 def test_trimesh_agrees(name):
     made = mesh.from_blade(Blade.from_definition(read(name)), stations=100)
-    other = mesh.to_trimesh(made)
+    other = mesh_files.to_trimesh(made)
     assert other.is_watertight
     assert other.is_winding_consistent
     assert_allclose(other.volume, made.volume, rtol=1e-9)
     assert_allclose(other.area, made.area, rtol=1e-9)
-    assert_allclose(mesh.to_trimesh(made, scale=1e3).volume, 1e9 * made.volume, rtol=1e-9)
+    assert_allclose(mesh_files.to_trimesh(made, scale=1e3).volume, 1e9 * made.volume, rtol=1e-9)
 
 
 def test_values_cannot_be_written():

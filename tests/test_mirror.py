@@ -8,14 +8,14 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen.cad import solids
+from bladegen.cad import shapes, solids
 from bladegen.cad.rotor import rotor_of
 from bladegen.cli import commands
 from bladegen.errors import ExportError, FamilyError
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
 from bladegen.measures import checks, properties
-from bladegen.surface import mesh, net
+from bladegen.surface import fitting, mesh, mesh_files
 from bladegen.surface.grid import Spacing
 from bladegen.surface.grid import from_blade as grid_of
 from bladegen.surface.tips import flat_tip, round_tip
@@ -52,7 +52,7 @@ def test_meshes_are_mirrored_and_look_outward(blade, image, tip):
     assert two.volume == pytest.approx(one.volume, rel=1e-12)
     assert_allclose(two.vertices.min(axis=0), (one.vertices * FLIP).min(axis=0), atol=1e-12)
     assert_allclose(two.vertices.max(axis=0), (one.vertices * FLIP).max(axis=0), atol=1e-12)
-    figures = checks.mesh_figures(mesh.to_trimesh(two))
+    figures = checks.mesh_figures(mesh_files.to_trimesh(two))
     assert figures["watertight"]
     assert figures["outward"]
 
@@ -60,7 +60,7 @@ def test_meshes_are_mirrored_and_look_outward(blade, image, tip):
 def test_a_solid_is_mirrored_and_its_faces_keep_their_names(blade, image):
     one, two = (solids.solid(b, tolerance=5e-3, sections=30) for b in (blade, image))
     assert two.volume == pytest.approx(one.volume, rel=1e-12)
-    assert solids.is_valid(two.shape)
+    assert shapes.is_valid(two.shape)
     assert {name for name, _ in one.faces} == {name for name, _ in two.faces}
     assert two.deviation.maximum == pytest.approx(one.deviation.maximum, rel=1e-6)
     boxes = [
@@ -87,7 +87,7 @@ def test_a_grid_is_mirrored_and_its_blocks_keep_their_names(blade, image):
 
 
 def test_a_solid_is_measured_on_the_sides_that_it_names(image):
-    found, deviation = net.fitted(image, 5e-3, sections=30)
+    found, deviation = fitting.fitted(image, 5e-3, sections=30)
     assert [part.face for part in deviation.parts][:2] == ["pressure side", "suction side"]
     assert found.volume() > 0
 
@@ -118,7 +118,7 @@ def test_the_command_mirrors_every_file_without_a_hub_radius(tmp_path):
     assert report["settings"]["mirrored"]
     plain = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=101)
     bg.export(plain, tmp_path / "plain.stl", stations=45)
-    one, two = (mesh.read(tmp_path / name) for name in ("plain.stl", "dtu10mw-mirrored.stl"))
+    one, two = (mesh_files.read(tmp_path / name) for name in ("plain.stl", "dtu10mw-mirrored.stl"))
     assert_allclose(two.bounds[:, 1], -one.bounds[::-1, 1], atol=1e-6)
     assert two.volume == pytest.approx(one.volume, rel=1e-6)
     refused = CliRunner().invoke(commands.app, [*command, "--format", "yaml"])

@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.blade.blade import Blade
 from bladegen.formats.reading import bundled, read
-from bladegen.surface import net
-from bladegen.surface.net import fitted
+from bladegen.surface import fitting, net
+from bladegen.surface.fitting import fitted
 from strategies import SEEDS, definitions, ellipse, few
 
 U = landmark_parameters(101)
@@ -72,20 +72,20 @@ def test_offsets_are_distances_along_the_normal():
 def test_fitted_nets_meet_their_tolerance(definition):
     blade = Blade.from_definition(definition, landmarks=201)
     said = []
-    fitted, deviation = net.fitted(blade, 1e-3, progress=said.append)
+    fitted, deviation = fitting.fitted(blade, 1e-3, progress=said.append)
     assert deviation.maximum < 1e-3
     assert deviation.rms <= deviation.percentile99 <= deviation.maximum
-    assert len(fitted.v) <= net.MAX_SECTIONS
+    assert len(fitted.v) <= fitting.MAX_SECTIONS
     assert said
     assert set(blade.eta) <= set(fitted.v)
 
 
 def test_a_finer_tolerance_takes_more_sections_and_gives_less_deviation():
     blade = Blade.from_definition(read("nrel5mw"), landmarks=201)
-    coarse, fine = (net.fitted(blade, tolerance) for tolerance in (5e-3, 1e-3))
+    coarse, fine = (fitting.fitted(blade, tolerance) for tolerance in (5e-3, 1e-3))
     assert len(coarse[0].v) < len(fine[0].v)
     assert coarse[1].maximum > fine[1].maximum
-    fixed, _ = net.fitted(blade, 1e-3, sections=50)
+    fixed, _ = fitting.fitted(blade, 1e-3, sections=50)
     assert len(fixed.v) == 50
 
 

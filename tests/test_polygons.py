@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen.airfoils import polygons
 from bladegen.measures.properties import volume
-from bladegen.surface import mesh
+from bladegen.surface import mesh, mesh_files
 
 
 def rectangle(width, height, x=0.0, y=0.0):
@@ -60,7 +60,7 @@ def test_blades_are_measured_as_trimesh_measures_them():
         blade = bg.Blade.from_definition(bg.read(name))
         sections = blade.sections(blade.stations(300))
         (found,), (area,) = polygons.volume_and_area(sections[None])
-        solid = mesh.to_trimesh(mesh.surface(sections))
+        solid = mesh_files.to_trimesh(mesh.surface(sections))
         assert isinstance(solid, trimesh.Trimesh)
         assert_allclose(found, solid.volume, rtol=2e-5)
         assert_allclose(area, solid.area, rtol=2e-5)

@@ -6,7 +6,7 @@ import trimesh
 from numpy.testing import assert_allclose
 
 from bladegen.blade.blade import Blade
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes, solids
 from bladegen.cad.rotor import rotor_of, write_glb, write_step
 from bladegen.errors import CadError
 from bladegen.formats.reading import read
@@ -68,13 +68,13 @@ def test_the_assembly_has_named_parts_that_are_valid(blade, tmp_path):
     for name in ("blade 1", "blade 2", "blade 3", "spinner"):
         assert f"'{name}'" in text
     shape = exchange.read(path)
-    assert solids.is_valid(shape)
+    assert shapes.is_valid(shape)
     from OCP.TopAbs import TopAbs_SOLID
     from OCP.TopExp import TopExp_Explorer
 
     found, explorer = [], TopExp_Explorer(shape, TopAbs_SOLID)
     while explorer.More():
-        found.append(solids.quick_volume(explorer.Current()) / 1e9)
+        found.append(shapes.quick_volume(explorer.Current()) / 1e9)
         explorer.Next()
     assert len(found) == 4
     assert_allclose(found[:3], solid.net.volume(), rtol=1e-3)

@@ -12,25 +12,18 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
-
-from bladegen.cad.solids import MILLIMETRES, Solid
+from bladegen.cad.solids import Solid
 from bladegen.errors import CadError
-from bladegen.support.arrays import Array, Indices
-from bladegen.surface.mesh import TriangleMesh
 
 __all__ = [
     "READERS",
     "STEP_SCHEMAS",
-    "FaceTriangles",
     "read",
     "read_brep",
     "read_iges",
     "read_step",
-    "triangles_of",
-    "triangulated",
     "write_brep",
     "write_iges",
     "write_step",
@@ -38,7 +31,6 @@ __all__ = [
 
 STEP_SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS"}  # and what OCCT calls them
 SOLIDS_MODE = 1  # of OCCT's IGES writer: manifold solids (entity 186), not loose trimmed faces
-ANGLE = 0.3  # rad, the largest turn from triangle to triangle; noses need it besides deflection
 
 
 def write_step(
@@ -198,84 +190,6 @@ READERS = {
 def read(path: Path) -> Any:
     """Read a CAD file's shape [mm] by its suffix, one of `READERS`."""
     return READERS[path.suffix.lower()](path)
-
-
-def triangulated(shape: Any, deflection: float) -> TriangleMesh:
-    """Triangulate a shape.
-
-    Parameters
-    ----------
-    shape : TopoDS_Shape
-        OCCT's shape [mm].
-    deflection : float
-        Largest distance of the triangles to the shape aimed at [m].
-
-    Returns
-    -------
-    TriangleMesh
-        In metres; faces of the shape have vertices of their own along common edges.
-
-    Raises
-    ------
-    CadError
-        If OCCT makes no triangles of it.
-    """
-    from OCP.BRepMesh import BRepMesh_IncrementalMesh
-    from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
-    from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
-
-    BRepMesh_IncrementalMesh(shape, deflection * MILLIMETRES, False, ANGLE, True)
-    points: list[Array] = []
-    triangles: list[Indices] = []
-    count, explorer = 0, TopExp_Explorer(shape, TopAbs_FACE)
-    while explorer.More():
-        face = TopoDS.Face_s(explorer.Current())
-        explorer.Next()
-        part = triangles_of(face)
-        if part is None:
-            continue
-        back = face.Orientation() == TopAbs_REVERSED
-        points.append(part.points / MILLIMETRES)
-        triangles.append((part.corners[:, ::-1] if back else part.corners) + count)
-        count += len(part.points)
-    if not points:
-        raise CadError("OCCT makes no triangles of this shape")
-    return TriangleMesh(np.concatenate(points), np.concatenate(triangles))
-
-
-class FaceTriangles(NamedTuple):
-    """A face's triangles as OCCT keeps them, whichever way the face looks.
-
-    Parameters
-    ----------
-    points : (v, 3) array
-        Corners [mm].
-    corners : (f, 3) array of int
-        Of each triangle.
-    uv : (v, 2) array
-        Parameters of the points on the face's surface.
-    """
-
-    points: Array
-    corners: Indices
-    uv: Array
-
-
-def triangles_of(face: Any) -> FaceTriangles | None:
-    """Return the triangles of a face that `BRepMesh` has meshed, None where it failed."""
-    from OCP.BRep import BRep_Tool
-    from OCP.TopLoc import TopLoc_Location
-
-    place = TopLoc_Location()
-    part = BRep_Tool.Triangulation_s(face, place)
-    if part is None or not part.NbTriangles():
-        return None
-    move, count = place.Transformation(), range(1, part.NbNodes() + 1)
-    points = [part.Node(i).Transformed(move).Coord() for i in count]
-    corners = [part.Triangle(i).Get() for i in range(1, part.NbTriangles() + 1)]
-    uv = [part.UVNode(i).Coord() for i in count] if part.HasUVNodes() else np.zeros((0, 2))
-    return FaceTriangles(np.array(points), np.array(corners) - 1, np.array(uv))
 
 
 def _name_product(model: Any, name: str) -> None:

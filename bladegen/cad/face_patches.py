@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.cad.exchange import ANGLE, triangles_of
-from bladegen.cad.solids import MILLIMETRES
+from bladegen.cad.shapes import MILLIMETRES
+from bladegen.cad.triangles import ANGLE, triangles_of
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array
 

@@ -14,12 +14,14 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.cad.exchange import triangulated
-from bladegen.cad.solids import MILLIMETRES, Solid
+from bladegen.cad.shapes import MILLIMETRES
+from bladegen.cad.solids import Solid
+from bladegen.cad.triangles import triangulated
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array
 from bladegen.support.files import require_end
-from bladegen.surface.mesh import TriangleMesh, assembled
+from bladegen.surface.mesh import TriangleMesh
+from bladegen.surface.mesh_files import assembled
 
 __all__ = ["Rotor", "rotor_of", "write_glb", "write_step"]
 

@@ -14,28 +14,19 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.cad.shapes import MILLIMETRES, area, is_valid
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array
+from bladegen.surface.deviation import Deviation
 from bladegen.surface.ends import edge_poles, measured, rounded, tip_volume
-from bladegen.surface.net import BEZIER, CLOSED_EDGE, Deviation, SurfaceNet, fitted
+from bladegen.surface.fitting import fitted
+from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet
 from bladegen.surface.tips import Tip, flat_tip
 
-__all__ = [
-    "DEFAULT_TOLERANCE",
-    "Solid",
-    "area",
-    "is_valid",
-    "quick_volume",
-    "solid",
-    "volume",
-]
+__all__ = ["DEFAULT_TOLERANCE", "Solid", "solid"]
 
 logger = logging.getLogger(__name__)
-
-MILLIMETRES = 1000.0
 SEWING = 1e-4  # mm; edges of one net meet to rounding, so this is slack, not repair
-VOLUME_TOLERANCE = 1e-6  # relative; OCCT's default quadrature is off by 3e-4 on these faces
-QUICK_VOLUME = 1e-3  # relative, as asked of OCCT
 DEFAULT_TOLERANCE = 0.3e-3  # m
 
 
@@ -145,51 +136,6 @@ def solid(
     faces += [("root", _cap(scaled, 0.0, blunt)), *_tip_faces(scaled, blunt, tip)]
     shape, named = _closed(faces, blade.name)
     return Solid(shape, named, net, deviation, tip_volume(net, tip), blade.name)
-
-
-def volume(shape: Any) -> float:
-    """Return a shape's volume [mm3], by OCCT's Gauss-Kronrod quadrature of every knot span.
-
-    Its own estimate of the accuracy is optimistic: the volume of a blade is off by up to 1e-5.
-    `Solid.volume` is exact.
-    """
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-
-    properties = GProp_GProps()
-    options = {"OnlyClosed": False, "IsUseSpan": True}
-    BRepGProp.VolumePropertiesGK_s(shape, properties, VOLUME_TOLERANCE, **options)
-    return float(properties.Mass())
-
-
-def quick_volume(shape: Any) -> float:
-    """Return a shape's volume [mm3] a hundred times faster: to compare a shape with its copy.
-
-    Twisted blades are off by up to a tenth, the same for the same shape.
-    """
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties, QUICK_VOLUME, False, False)
-    return float(properties.Mass())
-
-
-def area(shape: Any) -> float:
-    """Return a shape's surface area [mm2]."""
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(shape, properties, VOLUME_TOLERANCE, False)
-    return float(properties.Mass())
-
-
-def is_valid(shape: Any) -> bool:
-    """Tell whether OCCT finds no fault with a shape's topology and geometry."""
-    from OCP.BRepCheck import BRepCheck_Analyzer
-
-    return bool(BRepCheck_Analyzer(shape).IsValid())
 
 
 _LINEAR = np.array([0.0, 0.0, 1.0, 1.0])

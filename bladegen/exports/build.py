@@ -18,7 +18,7 @@ from typing import Any
 
 from bladegen import __version__
 from bladegen.blade.blade import Blade
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, shapes
 from bladegen.cad.rotor import Rotor, write_glb, write_step
 from bladegen.errors import ExportError, PromiseError
 from bladegen.exports import exporters, marks
@@ -31,9 +31,9 @@ from bladegen.formats import writing as writers
 from bladegen.measures import checks
 from bladegen.measures.spanwise import spanwise, write_csv
 from bladegen.support.files import alone, folder, replacing, safe_stem
-from bladegen.surface import mesh
+from bladegen.surface import mesh_files
+from bladegen.surface.deviation import Deviation
 from bladegen.surface.grid_quality import grid_figures
-from bladegen.surface.net import Deviation
 from bladegen.views import combs
 
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
@@ -239,7 +239,7 @@ def _measure(report: dict[str, Any], products: Products, kind: Kind, path: Path)
     elif kind is Kind.grid:
         report.setdefault("grid", grid_figures(products.grid))
     elif path.suffix in _MESHES:
-        figures = checks.mesh_figures(mesh.read(path))
+        figures = checks.mesh_figures(mesh_files.read(path))
         report.setdefault("meshes", {})[path.suffix.lstrip(".")] = figures
 
 
@@ -252,7 +252,7 @@ def _solid(products: Products, path: Path, wanted: float) -> dict[str, Any]:
     """Measure a STEP file as it lies on the disk, against the solid and the blade."""
     solid = products.solid
     again = checks.solid_figures(exchange.read(path), quick=True)
-    before = solids.quick_volume(solid.shape) / solids.MILLIMETRES**3
+    before = shapes.quick_volume(solid.shape) / shapes.MILLIMETRES**3
     deviation = solid.deviation
     return {
         **{key: again[key] for key in FROM_FILE},
@@ -274,9 +274,9 @@ def _solid(products: Products, path: Path, wanted: float) -> dict[str, Any]:
 def _deviation(deviation: Deviation) -> dict[str, Any]:
     """Return a deviation's figures [mm] and where the largest is."""
     return {
-        "maximum": deviation.maximum * solids.MILLIMETRES,
-        "rms": deviation.rms * solids.MILLIMETRES,
-        "percentile_99": deviation.percentile99 * solids.MILLIMETRES,
+        "maximum": deviation.maximum * shapes.MILLIMETRES,
+        "rms": deviation.rms * shapes.MILLIMETRES,
+        "percentile_99": deviation.percentile99 * shapes.MILLIMETRES,
         "at_eta": deviation.eta,
         "at_u": deviation.u,
         "samples": deviation.samples,
@@ -290,7 +290,7 @@ def _settings(blade: Blade, options: Options) -> dict[str, Any]:
         "section_planes": blade.planes.__name__,
         "trailing_edge": str(blade.trailing_edge),
         "mirrored": blade.mirrored,
-        "tolerance_mm": options.tolerance * solids.MILLIMETRES,
+        "tolerance_mm": options.tolerance * shapes.MILLIMETRES,
         "solid_sections": options.sections,
         "mesh_stations": options.stations,
         "tip": options.tip.__name__,

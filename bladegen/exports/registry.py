@@ -18,7 +18,7 @@ from bladegen.exports.products import Products
 from bladegen.formats import writing
 from bladegen.support.arguments import suggestion
 from bladegen.support.plugins import Offered, guarded, offered
-from bladegen.surface import grid_files, mesh
+from bladegen.surface import grid_files, mesh_files
 from bladegen.views import preview
 
 __all__ = ["FORMATS", "Format", "format_of", "formats", "plugged", "plugins", "suffix_of"]
@@ -69,13 +69,13 @@ def _write_brep(products: Products, path: Path) -> None:
 
 
 def _write_stl(products: Products, path: Path) -> None:
-    scaled = mesh.to_trimesh(products.mesh, scale=UNITS[products.options.unit])
+    scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS[products.options.unit])
     path.write_bytes(scaled.export(file_type="stl"))
 
 
 def _write_obj(products: Products, path: Path) -> None:
     unit = products.options.unit
-    scaled = mesh.to_trimesh(products.mesh, scale=UNITS[unit])
+    scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS[unit])
     header = f"bladegen {' '.join(products.blade.name.split())}, unit: {unit}"
     path.write_text(
         scaled.export(file_type="obj", include_normals=False, header=header), encoding="utf-8"
@@ -83,17 +83,17 @@ def _write_obj(products: Products, path: Path) -> None:
 
 
 def _write_ply(products: Products, path: Path) -> None:
-    scaled = mesh.to_trimesh(products.mesh, scale=UNITS[products.options.unit])
+    scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS[products.options.unit])
     path.write_bytes(scaled.export(file_type="ply", vertex_normal=False))
 
 
 def _write_glb(products: Products, path: Path) -> None:
-    path.write_bytes(mesh.to_trimesh(products.mesh).export(file_type="glb"))
+    path.write_bytes(mesh_files.to_trimesh(products.mesh).export(file_type="glb"))
 
 
 def _write_3mf(products: Products, path: Path) -> None:
-    scaled = mesh.to_trimesh(products.mesh, scale=UNITS["mm"])
-    path.write_bytes(mesh.with_steady_ids(scaled.export(file_type="3mf")))
+    scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS["mm"])
+    path.write_bytes(mesh_files.with_steady_ids(scaled.export(file_type="3mf")))
 
 
 def _write_vtp(products: Products, path: Path) -> None:

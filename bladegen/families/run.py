@@ -31,7 +31,7 @@ from bladegen.families.manifest_rows import drawn_again, rows_of
 from bladegen.support.arguments import whole
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import digest_of, folder
-from bladegen.surface.net import fitted
+from bladegen.surface.fitting import fitted
 
 __all__ = ["Order", "run"]
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.cad import solids
+from bladegen.cad import shapes
 from bladegen.support.arrays import Array
 from bladegen.surface import mesh
 
@@ -39,17 +39,17 @@ def solid_figures(shape: Any, *, quick: bool = False) -> dict[str, Any]:
         members[key] = found
     box = Bnd_Box()
     BRepBndLib.AddOptimal_s(shape, box, False, False)
-    bounds = np.array(box.Get() if not box.IsVoid() else (0.0,) * 6) / solids.MILLIMETRES
+    bounds = np.array(box.Get() if not box.IsVoid() else (0.0,) * 6) / shapes.MILLIMETRES
     shells = members["shells"]
     closed = bool(shells) and all(BRep_Tool.IsClosed_s(shell) for shell in shells)
-    volume = solids.quick_volume if quick else solids.volume
+    volume = shapes.quick_volume if quick else shapes.volume
     return {
         **{key: len(found) for key, found in members.items()},
-        "valid": solids.is_valid(shape),
+        "valid": shapes.is_valid(shape),
         "closed": closed,
         "one_solid": len(members["solids"]) == 1,
-        "volume_m3": volume(shape) / solids.MILLIMETRES**3,
-        "area_m2": solids.area(shape) / solids.MILLIMETRES**2,
+        "volume_m3": volume(shape) / shapes.MILLIMETRES**3,
+        "area_m2": shapes.area(shape) / shapes.MILLIMETRES**2,
         "bounds_m": _bounds(bounds.reshape(2, 3)),
     }
 

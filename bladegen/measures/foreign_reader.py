@@ -84,13 +84,13 @@ def _plain(text: str) -> str:
 def _loaded(path: Path) -> Any:
     """Read a file as a shape of OCCT or a trimesh.Trimesh."""
     from bladegen.cad import exchange
-    from bladegen.surface import mesh, vtk_files
+    from bladegen.surface import mesh_files, vtk_files
 
     if path.suffix.lower() in SOLIDS:
         return exchange.read(path)
     if path.suffix.lower() == ".vtp":
-        return mesh.sound(path, *vtk_files.triangles(path))
-    return mesh.read(path)
+        return mesh_files.sound(path, *vtk_files.triangles(path))
+    return mesh_files.read(path)
 
 
 def _figures(path: Path) -> Answer:

@@ -17,8 +17,9 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.measures.patches import Patch
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.ends import edge_poles, rounded
+from bladegen.surface.fitting import resolving_landmarks
 from bladegen.surface.mesh import TriangleMesh
-from bladegen.surface.net import BEZIER, CLOSED_EDGE, DEGREE, SurfaceNet, resolving_landmarks
+from bladegen.surface.net import BEZIER, CLOSED_EDGE, DEGREE, SurfaceNet
 from bladegen.surface.tips import Tip, flat_tip
 
 __all__ = ["Surface", "of_blade", "of_faces", "of_mesh"]

@@ -1,0 +1,123 @@
+"""Triangle meshes to files of other programs and back, by trimesh, which is imported when needed.
+
+What is read is checked: a triangle leads to a vertex that is there, and coordinates are numbers.
+"""
+
+import hashlib
+import io
+import re
+import uuid
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.errors import FileError
+from bladegen.support.arrays import Array, Indices
+from bladegen.surface.mesh import TriangleMesh
+
+__all__ = ["assembled", "read", "sound", "to_trimesh", "with_steady_ids"]
+
+FARTHEST = 1e9  # of a vertex of a file, in its unit: products of three lengths stay finite
+
+
+def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
+    """Return the mesh as a trimesh.Trimesh, its lengths times `scale`."""
+    import trimesh
+
+    return trimesh.Trimesh(
+        vertices=mesh.vertices * scale, faces=mesh.faces, process=False, validate=False
+    )
+
+
+def assembled(parts: Sequence[tuple[str, TriangleMesh, Array, Array]]) -> bytes:
+    """Return named meshes, each turned (3, 3) and shifted (3,) [m], as one GLB file's bytes.
+
+    Points are ``p @ rotation.T + shift``; a mesh that stands in several places is stored once.
+    """
+    import trimesh
+
+    scene = trimesh.Scene()
+    known: dict[int, str] = {}
+    for name, mesh, rotation, shift in parts:
+        move = np.eye(4)
+        move[:3, :3], move[:3, 3] = rotation, shift
+        if id(mesh) in known:
+            scene.graph.update(name, matrix=move, geometry=known[id(mesh)])
+        else:
+            scene.add_geometry(to_trimesh(mesh), node_name=name, geom_name=name, transform=move)
+            known[id(mesh)] = name
+    data: bytes = scene.export(file_type="glb")
+    return data
+
+
+def with_steady_ids(package: bytes) -> bytes:
+    """Return a 3MF file with identifiers that follow from its content, instead of random ones."""
+    with zipfile.ZipFile(io.BytesIO(package)) as archive:
+        members = [(info, archive.read(info)) for info in archive.infolist()]
+    plain = b"".join(_UUID.sub(b"", content) for _, content in members)
+    seed = hashlib.sha256(plain).hexdigest()
+    known: dict[bytes, bytes] = {}
+
+    def steady(found: re.Match[bytes]) -> bytes:
+        name = f"{seed}/{len(known)}"
+        known.setdefault(found[0], str(uuid.uuid5(uuid.NAMESPACE_OID, name)).encode())
+        return known[found[0]]
+
+    result = io.BytesIO()
+    with zipfile.ZipFile(result, "w") as archive:
+        for info, content in members:
+            archive.writestr(info, _UUID.sub(steady, content))
+    return result.getvalue()
+
+
+_UUID = re.compile(rb"(?<=UUID=\")[0-9a-fA-F-]{36}(?=\")")
+
+
+def read(path: Path) -> Any:
+    """Read a mesh file of any format that trimesh knows, as one trimesh.Trimesh.
+
+    Files that it names beside itself (materials, pictures) are not opened.
+
+    Raises
+    ------
+    FileError
+        If trimesh cannot make sound triangles of it.
+    """
+    import trimesh
+
+    try:
+        kind = path.suffix.lower().lstrip(".")
+        # a stream with a name leads trimesh to what lies beside
+        content = io.BytesIO(path.read_bytes())
+        loaded = trimesh.load_mesh(content, file_type=kind, resolver=None)
+        vertices, faces = loaded.vertices, loaded.faces
+    except Exception as error:  # trimesh's loaders raise whatever their parsers do
+        text = f"{type(error).__name__} {error}"
+        raise FileError(str(path), [f"is no mesh that can be read: {text}"]) from None
+    return sound(path, vertices, faces, loaded)
+
+
+def sound(path: Path, vertices: Array, faces: Indices, made: Any = None) -> Any:
+    """Return triangles of a file as a trimesh.Trimesh, `made` if there is one already.
+
+    Raises
+    ------
+    FileError
+        If there are none, one leads to a vertex that is not there, or a coordinate is no number.
+    """
+    if not len(faces):
+        raise FileError(str(path), ["holds no triangles"])
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        bad = int(faces.min() if faces.min() < 0 else faces.max())
+        raise FileError(
+            str(path), [f"a triangle names vertex {bad}, allowed are 0 to {len(vertices) - 1}"]
+        )
+    used = np.asarray(vertices)[np.unique(faces)]
+    if not np.isfinite(used).all() or np.abs(used).max() > FARTHEST:
+        raise FileError(
+            str(path), [f"has vertices that are no numbers, or farther away than {FARTHEST:g}"]
+        )
+    return to_trimesh(TriangleMesh(vertices, faces)) if made is None else made

@@ -21,8 +21,8 @@ from math import comb
 import numpy as np
 from figures import asked, figure, seconds
 
-from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import landmarks
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.formats.baselines import baselines
 from bladegen.shapes import affine, cst, grassmann
 from bladegen.shapes.shape_space import ShapeSpace

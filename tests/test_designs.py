@@ -7,7 +7,8 @@ from scipy.stats import kstest
 
 import bladegen as bg
 from bladegen.errors import DesignError
-from bladegen.variants.designs import DESIGNS, Design, Factors, factors, tabulated
+from bladegen.variants.designs import DESIGNS, Design, tabulated
+from bladegen.variants.factors import Factors, factors
 
 SPACE = bg.ShapeSpace.bundled()
 WHAT = factors(SPACE, {"thickness": (0.9, 1.1), "twist": (-0.05, 0.05)})

@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.cli.texts import finish
 from bladegen.errors import BladegenError, GeometryError

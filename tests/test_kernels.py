@@ -16,12 +16,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 import bladegen as bg
 from bladegen.airfoils import characteristics, plane_maps, polygons
 from bladegen.airfoils.crossing import crossing_sections
-from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import landmarks
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.blade.deformation import AffineChange, Window
 from bladegen.blade.edges import MinimumThickness
 from bladegen.support import compiled
-from bladegen.variants import kernels, sizes
+from bladegen.variants import kernels, section_measures, sizes
 from bladegen.variants.batch import SectionBatch
 from strategies import airfoils, box
 
@@ -44,14 +44,16 @@ def loaded(module, **names):
 @cache
 def plain():
     """The kernels as plain Python."""
-    modules = (compiled, plane_maps, characteristics, sizes)
+    modules = (compiled, plane_maps, characteristics, section_measures, sizes)
     known = {module.__name__: module for module in modules}
     numba.config.DISABLE_JIT = True
     try:
         decorator = loaded(compiled)
         maps = loaded(plane_maps, **{"bladegen.support.compiled": decorator})
         loaded_looks = loaded(characteristics, **{"bladegen.airfoils.plane_maps": maps})
-        inner = loaded(sizes, **{"bladegen.airfoils.characteristics": loaded_looks})
+        looks = {"bladegen.airfoils.characteristics": loaded_looks}
+        measured = loaded(section_measures, **looks)
+        inner = loaded(sizes, **{"bladegen.variants.section_measures": measured})
         return loaded(kernels, **{"bladegen.variants.sizes": inner})
     finally:
         numba.config.DISABLE_JIT = False

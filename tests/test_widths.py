@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.blade.edge_widths import Wedges
 from bladegen.measures.smoothness import edge_bulges, edge_widths
 from bladegen.shapes import grassmann

@@ -9,88 +9,22 @@ normal to the chord line, over the chord.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
+from bladegen.airfoils.cubics import Cubics
 from bladegen.airfoils.resizing import RIVAL, resizing, stretching
-from bladegen.airfoils.roots import ITERATIONS, PARAMETER_TOLERANCE, bracketed, falling
+from bladegen.airfoils.roots import ITERATIONS, bracketed, falling
 from bladegen.errors import GeometryError
-from bladegen.support.arrays import Array, Indices, Mask, mapped, readonly
+from bladegen.support.arrays import Array, Indices, Mask, mapped
 
-__all__ = ["SectionCurves", "SectionSplines"]
+__all__ = ["SectionCurves"]
 
 SETTLED = 1e-13  # change of a stretch that ends its iteration
 EVEN = 1e-11  # of `AMBIGUOUS`; differences of distances that are rounding
 SAME_NOSE = 3  # landmarks; nearer peaks are one nose
 AMBIGUOUS = 2e-5  # of a chord; noses whose distances differ by less share the leading edge
-REMEMBERED = 8  # sets of landmark parameters whose matrices are kept, 1.3 MB each for 401
-WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
-
-
-@lru_cache(maxsize=REMEMBERED)
-def _slope_matrix(parameters_in_bytes: bytes) -> Array:
-    """Return the matrix of `SectionSplines`, shared by all blades with the same landmarks."""
-    from scipy.interpolate import CubicSpline
-
-    u = np.frombuffer(parameters_in_bytes)
-    return readonly(CubicSpline(u, np.eye(len(u)))(u, 1))
-
-
-@dataclass(frozen=True, eq=False)
-class SectionSplines:
-    """Fits splines to any number of sections with the same landmark parameters.
-
-    Parameters
-    ----------
-    u : (n,) array
-        Landmark parameters, 0.5 at the leading-edge landmark, symmetric about it.
-
-    Notes
-    -----
-    A spline's slopes are linear in its points, so a fit is one matrix product.
-    """
-
-    u: Array
-
-    @cached_property
-    def _slopes(self) -> Array:
-        """The (n, n) matrix from points to the slopes of their not-a-knot cubic spline."""
-        return _slope_matrix(self.u.tobytes())
-
-    def values(self, u: Array, derivative: int = 0) -> Array:
-        """Return the (m, n) matrix from landmarks to points, or derivatives, at `u`."""
-        from scipy.interpolate import CubicSpline
-
-        matrix: Array = CubicSpline(self.u, np.eye(len(self.u)))(u, derivative)
-        return matrix
-
-    def fit(self, points: Array) -> "SectionCurves":
-        """Return the splines through landmarks (k, n, 2)."""
-        n, k = len(self.u), len(points)
-        columns = np.moveaxis(points, 1, 0).reshape(n, 2 * k)  # one product for all sections
-        slopes = np.moveaxis((self._slopes @ columns).reshape(n, k, 2), 0, 1)
-        return SectionCurves(self.u, points, slopes)
-
-    def normalising(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array]:
-        """Return the maps that bring sections to unit chord and relative thickness, exactly.
-
-        Both are maps of GL2 that move no point of the Grassmannian: a scaling, and a
-        stretch normal to the chord line, which keeps leading edge and trailing-edge midpoint.
-
-        Parameters
-        ----------
-        points : (k, n, 2) array
-            Sections in airfoil axes, close to unit chord.
-        relative_thickness : (k,) array, optional
-            The thickness over chord to reach, not many times its own; None leaves it.
-
-        Returns
-        -------
-        A, c : (k, 2, 2), (k, 2) arrays
-            ``points @ A + c`` has unit chord and the thickness.
-        """
-        return self.fit(points).normalising(relative_thickness)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,19 +76,11 @@ class SectionCurves:
 
     def at(self, u: Array) -> tuple[Array, Array, Array]:
         """Return points and first and second derivatives at `u` (k, ...), each (k, ..., 2)."""
-        i = np.clip(np.searchsorted(self.u, u, side="right") - 1, 0, len(self.u) - 2)
-        row = np.arange(len(self.points)).reshape((-1,) + (1,) * (u.ndim - 1))
-        start, slope = self.points[row, i], self.slopes[row, i]
-        width, h = (self.u[i + 1] - self.u[i])[..., None], (u - self.u[i])[..., None]
-        secant = (self.points[row, i + 1] - start) / width
-        bend = self.slopes[row, i + 1] + slope - 2.0 * secant
-        a = bend / width**2
-        b = (secant - slope - bend) / width
-        return (
-            ((a * h + b) * h + slope) * h + start,
-            (3 * a * h + 2 * b) * h + slope,
-            6 * a * h + 2 * b,
-        )
+        return self._cubics.at(u)
+
+    @property
+    def _cubics(self) -> Cubics:
+        return Cubics(self.u, self.points, self.slopes)
 
     def take(self, rows: Indices) -> "SectionCurves":
         """Return some of the sections."""
@@ -297,7 +223,7 @@ class SectionCurves:
         normal = np.stack([-along[:, 1], along[:, 0]], axis=-1)
         axes = np.stack([along, normal], axis=-1)
         turned = SectionCurves(self.u, (self.points - edge[:, None]) @ axes, self.slopes @ axes)
-        thickness, far = turned._height, ((noses - edge)[..., None, :] @ axes)[..., 0, :]
+        thickness, far = turned._cubics.height, ((noses - edge)[..., None, :] @ axes)[..., 0, :]
         side = np.sign(far[1, :, 1] - far[0, :, 1])
         factors = np.ones((len(lead), 2))
         for _ in range(ITERATIONS):  # other points become the farthest, to second order
@@ -333,53 +259,4 @@ class SectionCurves:
     @cached_property
     def thickness(self) -> Array:
         """Largest distance between the sides normal to the chord line, (k,)."""
-        return self._along_chord._height
-
-    @property
-    def _height(self) -> Array:
-        """Largest height between the sides at one x, (k,)."""
-        middle = len(self.u) // 2
-        reach = max(0, min(WINDOW, (middle - 3) // 2))
-        paired = self.points[:, :middle, 1] - self.points[:, :middle:-1, 1]
-        best, rows = np.argmax(paired, axis=1), np.arange(len(paired))
-        for _ in range(middle):
-            at = np.clip(best[rows], reach + 1, max(reach + 1, middle - reach - 2))
-            window = at[:, None] + np.arange(-reach, reach + 1)
-            heights = self.take(rows)._gap(self.u[window], 1.0 - self.u[window])[0]
-            best[rows] = found = window[np.arange(len(rows)), np.argmax(heights, axis=1)]
-            rows = rows[(np.abs(found - at) == reach) & (found != at)]
-            if not rows.size:
-                break
-
-        height, opposite = np.empty(0), 1.0 - self.u[best]
-
-        def rising(u: Array) -> tuple[Array, Array]:
-            nonlocal height, opposite
-            height, slope, bend, opposite = self._gap(u, opposite)
-            return slope, bend
-
-        falling(rising, self.u[best - 1], self.u[best], self.u[best + 1])
-        return height
-
-    def _gap(self, u: Array, w: Array) -> tuple[Array, Array, Array, Array]:
-        """Return the height between the sides at suction parameters `u`, and two derivatives.
-
-        `w` is a first guess of the pressure side's parameters at the same x; those found are
-        returned last.
-        """
-        p, p1, p2 = self.at(u)
-        for _ in range(8):  # Newton for the pressure-side point at the same x
-            q, q1, q2 = self.at(w)
-            step = (q[..., 0] - p[..., 0]) / q1[..., 0]
-            w = np.clip(w - step, 0.5, 1.0)
-            if np.all(np.abs(step) <= PARAMETER_TOLERANCE):
-                break
-        q = q - q1 * step[..., None]  # the last step to first order: 1e-12 is left
-        rate = p1[..., 0] / q1[..., 0]  # dw / du at equal x
-        bend = (p2[..., 0] - q2[..., 0] * rate**2) / q1[..., 0]
-        return (
-            p[..., 1] - q[..., 1],
-            p1[..., 1] - q1[..., 1] * rate,
-            p2[..., 1] - q2[..., 1] * rate**2 - q1[..., 1] * bend,
-            w,
-        )
+        return self._along_chord._cubics.height

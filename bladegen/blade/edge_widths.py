@@ -16,7 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionCurves, SectionSplines
+from bladegen.airfoils.curves import SectionCurves
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.definition.blade_definition import Interpolant
 from bladegen.shapes import affine
 from bladegen.support.arrays import Array

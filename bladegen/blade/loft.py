@@ -11,8 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import Contour, Spacing, contour, landmark_parameters
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.blade.edge_widths import EdgeWidths, Joining
 from bladegen.blade.paths import PATHS, Parameter, Path, PathMaker, SectionSpline, geodesic_path
 from bladegen.definition.blade_definition import BladeDefinition, Distribution, pchip

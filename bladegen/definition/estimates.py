@@ -14,9 +14,9 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.airfoils.polars import ESTIMATED, Polar
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.airfoils.viterna import STALL, extended
 from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Station
 from bladegen.errors import BladegenError, Finding

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import Contour
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array

@@ -22,8 +22,9 @@ from bladegen.support.arguments import instance, one_of, whole
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.files import safe_stem
 from bladegen.variants.batch import FAULTS, Batch, SectionBatch
-from bladegen.variants.designs import Design, factors
+from bladegen.variants.designs import Design
 from bladegen.variants.draws import Seed
+from bladegen.variants.factors import factors
 
 __all__ = ["BLOCK", "POLICIES", "Block", "Family", "family"]
 

@@ -14,7 +14,7 @@ import numpy as np
 from bladegen.airfoils import polygons
 from bladegen.airfoils.chord_lines import ChordLines
 from bladegen.airfoils.crossing import crossing_sections
-from bladegen.airfoils.curves import SectionSplines
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import MinimumThickness
 from bladegen.errors import Finding

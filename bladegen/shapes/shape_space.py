@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionSplines
 from bladegen.airfoils.landmarks import landmark_parameters
+from bladegen.airfoils.splines import SectionSplines
 from bladegen.errors import GeometryError, SpaceError
 from bladegen.shapes import grassmann
 from bladegen.shapes.saved_spaces import NO_SPREAD, ORTHONORMAL, problem_of

@@ -3,7 +3,8 @@
 Numba compiles a function when it is first called and keeps the result on the disk, in the
 package's folder or the user's cache.  What it keeps it makes anew when the file of the function
 that was called has another text, but not when a constant or a function from elsewhere has: who
-changes `sizes`, or a tolerance that it shares, writes the release's next `REVISION` in `kernels`.
+changes `sizes`, `section_measures` or a tolerance that they share, writes the release's next
+`REVISION` in `kernels`.
 
 Arithmetic is strict: were sums free to be taken in another order, two processes that compile for
 themselves could differ in the last digit, and families with them.

@@ -1,12 +1,7 @@
 """Many perturbations of one blade at once: sections at fixed spans, measured and tested.
 
-What does not change from variant to variant is prepared once: the shapes at the spans, the
-modes carried there by parallel transport, and the splines of both.  A variant's section is
-then linear in these features, F a span, with coefficients from its 2 x 2 matrices,
-
-    (X cos S + D sin S / S) M A + ...,   D = w sum_j t_j V_j,   S^2 = D^T D,
-
-and a compiled loop (`kernels`) takes it from there.  The result is what `Blade.perturbed` gives,
+What does not change from variant to variant is prepared once (`features`, `placing`), and a
+compiled loop (`kernels`) takes it from there.  The result is what `Blade.perturbed` gives,
 to rounding.  Arrays are (k, b, ...), spans first, until sections come out as (b, k, ...).
 """
 
@@ -16,19 +11,20 @@ from functools import cached_property
 import numpy as np
 
 from bladegen.airfoils import polygons
-from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions, angles
+from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
 from bladegen.airfoils.crossing import crossing_sections
 from bladegen.airfoils.curves import SectionCurves
 from bladegen.blade.blade import Blade
 from bladegen.blade.deformation import AffineChange, Window, faded
 from bladegen.blade.edges import AsGiven, MinimumThickness, TrailingEdge
-from bladegen.blade.planform import placement
 from bladegen.blade.sanity import CHARACTERISTICS, Oddities, characteristics, oddities
-from bladegen.shapes import affine, grassmann
+from bladegen.shapes import affine
 from bladegen.shapes.domain import Domain
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.support.arrays import Array, ArrayLike, Indices, readonly
+from bladegen.support.arrays import Array, Indices, readonly
+from bladegen.variants.features import Features
 from bladegen.variants.members import CROSSING, FAULTS, SOUND, THIN, TURNED, Batch
+from bladegen.variants.placing import Placing, column
 
 __all__ = ["FAULTS", "LOST_THICKNESS", "Batch", "SectionBatch"]
 
@@ -76,8 +72,21 @@ class SectionBatch:
         return self.window(self.eta)
 
     @cached_property
-    def _shapes(self) -> tuple[Array, Array, Array, Array]:
-        return self.blade.shapes(self.eta)
+    def _features(self) -> Features:
+        return Features(self.blade, self.space, self.eta)
+
+    @cached_property
+    def _placing(self) -> Placing:
+        return Placing(self.blade, self.eta)
+
+    @property
+    def features(self) -> Array:
+        """The features that sections are linear in, (k, F, n)."""
+        return self._features.values
+
+    def coefficients(self, t: Array) -> Array:
+        """Return the coefficients (k, b, F, 2) of shapes with coordinates t (b, r)."""
+        return self._features.coefficients(t, self._weight)
 
     @property
     def modes(self) -> int:
@@ -85,42 +94,10 @@ class SectionBatch:
         return self.space.dimension if self.space is not None else 0
 
     @cached_property
-    def _carried(self) -> Array:
-        """The modes at the spans' shapes, (k, r, n, 2)."""
-        X = self._shapes[1]
-        if self.space is None:
-            return np.zeros((len(X), 0, *X.shape[1:]))
-        return grassmann.transport(self.space.modes, self.space.mean, X[:, None])
-
-    @cached_property
-    def features(self) -> Array:
-        """The shapes, the carried modes, and a constant, (k, F, n)."""
-        X, V = self._shapes[1], self._carried
-        k, n, _ = X.shape
-        rows = [np.moveaxis(X, -1, 1), np.moveaxis(V, -1, 2).reshape(k, -1, n), np.ones((k, 1, n))]
-        return np.concatenate(rows, axis=1)
-
-    @cached_property
-    def _slopes(self) -> Array:
-        """The slopes of the features' splines, (k, n, F)."""
-        slopes = self.blade.splines.values(self.blade.u, 1) @ self.features.mT
-        return np.ascontiguousarray(slopes)
-
-    @cached_property
-    def _gram(self) -> Array:
-        """V_i^T V_j, (k, r * r, 4)."""
-        V = self._carried
-        k, r = V.shape[:2]
-        return (V.mT[:, :, None] @ V[:, None]).reshape(k, r * r, 4)
-
-    @cached_property
     def _ruling(self) -> Array:
         """The relative thickness that the baseline has or shall have, (k,)."""
-        plain, _, M, b = self._shapes
         wanted = self.blade.wanted_thickness(self.eta)
-        if wanted is not None:
-            return wanted
-        return self.blade.splines.fit(affine.restore(plain, M, b)).relative_thickness
+        return self.before if wanted is None else wanted
 
     @cached_property
     def before(self) -> Array:
@@ -129,7 +106,7 @@ class SectionBatch:
 
     @cached_property
     def _curves_before(self) -> SectionCurves:
-        plain, _, M, b = self._shapes
+        plain, _, M, b = self._features.shapes
         return self.blade.splines.fit(affine.restore(plain, M, b))
 
     @property
@@ -168,25 +145,6 @@ class SectionBatch:
             result[k] = numbers(*self.blade.shape.chord_lines(eta, target[k]))
         return result
 
-    def coefficients(self, t: Array) -> Array:
-        """Return the coefficients (k, b, F, 2) of shapes with coordinates t (b, r)."""
-        _, _, M, b = self._shapes
-        k, r = self._carried.shape[:2]
-        count = len(t)
-        weighted = t * self._weight[:, None, None]
-        pairs = (weighted[..., :, None] * weighted[..., None, :]).reshape(k, count, r * r)
-        squares = np.zeros((k, count, 4))
-        for j in range(r * r):  # a matrix product would round by how many variants there are
-            squares += pairs[..., j, None] * self._gram[:, None, j]
-        cosine, sinc = grassmann.exp_factors(squares.reshape(k, count, 2, 2))
-        result = np.empty((k, count, 2 * r + 3, 2))
-        result[:, :, :2] = cosine @ M[:, None]
-        result[:, :, 2:-1] = (weighted[..., None, None] * (sinc @ M[:, None])[:, :, None]).reshape(
-            k, count, 2 * r, 2
-        )
-        result[:, :, -1] = b[:, None]
-        return result
-
     def evaluate(
         self,
         t: Array,
@@ -210,7 +168,7 @@ class SectionBatch:
         """
         shape = len(t), len(self.eta)
         raw, target = self.coefficients(t), self._target(change, len(t))
-        to_space, chord, twist = self._placement(change, len(t))
+        to_space, chord, twist = self._placing(change, self._weight, len(t))
         sections: Array = np.empty((*shape, len(self.blade.u), 3), dtype=dtype)
         measures = np.empty((*shape, len(polygons.MEASURES)) if measured else (0, 0, 0))
         looks = np.empty((*shape, len(CHARACTERISTICS)))
@@ -230,7 +188,7 @@ class SectionBatch:
                     scale = chord[i, :, None, None]
                     measures[i] = polygons.measure(profiles[i, ..., :2] * scale)
         if measured:
-            twist = twist + self._turned(sections, to_space)
+            twist = twist + self._features.turned(sections, to_space)
         return Batch(
             sections,
             chord,
@@ -240,16 +198,6 @@ class SectionBatch:
             looks,
             measures if measured else None,
         )
-
-    def _turned(self, sections: Array, to_space: Array) -> Array:
-        """Return how far chord lines of sections (b, k, n, 3) turn from the baseline's, (b, k)."""
-        plain, _, M, b = self._shapes
-        before = angles(affine.restore(plain, M, b))
-        result = np.empty(sections.shape[:2])
-        for i, (section, axes) in enumerate(zip(sections, to_space, strict=True)):
-            local = (section - axes[:, None, 2]) @ axes[:, :2].mT  # chords squared
-            result[i] = angles(local) - before
-        return result
 
     def faults(self, t: Array, change: AffineChange) -> tuple[Indices, Array]:
         """Return what is wrong with the sections of variants, and their relative thickness.
@@ -275,7 +223,7 @@ class SectionBatch:
         """Where the space's data allow the sections to go; None without a space."""
         if self.space is None:
             return None
-        return Domain.of(self.space, self.eta, self._shapes[1], self._ruling)
+        return Domain.of(self.space, self.eta, self._features.shapes[1], self._ruling)
 
     def step(self, t: Array) -> Array:
         """Return by how much coordinates t (b, r) change those of the sections, (b, k, r)."""
@@ -283,7 +231,7 @@ class SectionBatch:
 
     def _target(self, change: AffineChange, count: int) -> Array:
         """Return the relative thickness to reach, (k, b)."""
-        thickening = faded(np.ones(1), self._weight[:, None], _column(change.thickening).T)
+        thickening = faded(np.ones(1), self._weight[:, None], column(change.thickening).T)
         target: Array = self._ruling[:, None] * thickening
         return np.broadcast_to(target, (len(self.eta), count))
 
@@ -303,9 +251,18 @@ class SectionBatch:
 
         own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
         standing = self._standing(target) if sections.size else target[..., None]
-        given = [self.blade.u, self.features, self._slopes, raw, target, standing, own, known]
+        given = [
+            self.blade.u,
+            self.features,
+            self._features.slopes,
+            raw,
+            target,
+            standing,
+            own,
+            known,
+        ]
         flat = self._plain_ruling[:, None] / target
-        given += [chord, to_space, sections, measures, edge, flat, looks]
+        given += [own, known, chord, to_space, sections, measures, edge, flat, looks]
         # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise
         kernels.made(
             *(np.require(values, requirements=["C", "W"]) for values in given),
@@ -335,46 +292,3 @@ class SectionBatch:
             edge.require_room(thickness, chord)
             return edge.width(chord)
         return np.zeros(chord.shape) if type(edge) is AsGiven else None
-
-    def _placement(self, change: AffineChange, count: int) -> tuple[Array, Array, Array]:
-        """Return the maps (b, k, 3, 3) of (x, y, 1) to space, and chord and twist (b, k)."""
-        eta, weight, definition = self.eta, self._weight, self.blade.definition
-        widening, whole = _column(change.widening), _column(change.chord_scale)
-        chord = whole * faded(self.blade.chord(eta), weight, widening)
-        twist = faded(
-            _column(change.twist_scale) * self.blade.twist(eta), weight, 1.0, _column(change.twist)
-        )
-        offset_y = whole * faded(definition.offset_y(eta), weight, widening)
-        offset = np.stack(np.broadcast_arrays(-offset_y, definition.offset_x(eta)), axis=-1)
-        axis, frames = self._axis(np.asarray(change.prebend_scale, dtype=np.float64))
-        axes, start = placement(chord, twist, offset, axis, frames)
-        shape = count, len(eta)
-        to_space = np.concatenate([axes, start[..., None, :]], axis=-2)
-        return (
-            np.broadcast_to(to_space, (*shape, 3, 3)),
-            np.array(np.broadcast_to(chord, shape)),
-            np.array(np.broadcast_to(twist, shape)),
-        )
-
-    def _axis(self, prebend_scale: Array) -> tuple[Array, Array]:
-        """Return reference axes (b or 1, k, 3) and section frames (b or 1, k, 3, 3)."""
-        values, inverse = np.unique(prebend_scale, return_inverse=True)
-        standing = [self._own_axis if value == 1.0 else self._bent(value) for value in values]
-        axes, frames = (np.stack(parts) for parts in zip(*standing, strict=True))
-        index = np.atleast_1d(inverse)
-        return axes[index], frames[index]
-
-    @cached_property
-    def _own_axis(self) -> tuple[Array, Array]:
-        return self._bent(1.0)
-
-    def _bent(self, prebend_scale: float) -> tuple[Array, Array]:
-        """Return the axis and the frames, which are carried along it, of one prebend."""
-        change = AffineChange(prebend_scale=float(prebend_scale))
-        axis = change.applied(self.blade.definition, self.window).axis
-        return axis(self.eta), self.blade.planes(axis)(self.eta)
-
-
-def _column(value: ArrayLike) -> Array:
-    """Return a number, or one a variant (b,), as (1, 1) or (b, 1)."""
-    return np.atleast_1d(np.asarray(value, dtype=np.float64))[:, None]

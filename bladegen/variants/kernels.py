@@ -21,7 +21,8 @@ from bladegen.airfoils.separation import ANGLES, APART, FLAT
 from bladegen.blade.edges import WINDOW
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.compiled import compiled
-from bladegen.variants.sizes import Section, chord_line, sizing
+from bladegen.variants.section_measures import Section
+from bladegen.variants.sizes import chord_line, sizing
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 

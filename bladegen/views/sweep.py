@@ -19,7 +19,7 @@ from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
-from bladegen.variants.designs import factors
+from bladegen.variants.factors import factors
 from bladegen.views import style
 from bladegen.views.blade_scene import DISTANCE, MILLIMETRES
 from bladegen.views.cameras import VIEWS, View

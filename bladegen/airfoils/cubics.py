@@ -1,0 +1,92 @@
+"""Sections as cubics between landmarks: points on them, and the height between their sides.
+
+Landmarks have shape (k, n, 2) at common parameters u (n,), trailing edge -> suction side ->
+leading edge -> pressure side; landmarks i and -1 - i lie opposite.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladegen.airfoils.roots import PARAMETER_TOLERANCE, falling
+from bladegen.support.arrays import Array
+
+__all__ = ["Cubics"]
+
+WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
+
+
+@dataclass(frozen=True, eq=False)
+class Cubics:
+    """Cubics through points with slopes (k, n, 2) at the parameters u (n,)."""
+
+    u: Array
+    points: Array
+    slopes: Array
+
+    def at(self, u: Array) -> tuple[Array, Array, Array]:
+        """Return points and first and second derivatives at `u` (k, ...), each (k, ..., 2)."""
+        i = np.clip(np.searchsorted(self.u, u, side="right") - 1, 0, len(self.u) - 2)
+        row = np.arange(len(self.points)).reshape((-1,) + (1,) * (u.ndim - 1))
+        start, slope = self.points[row, i], self.slopes[row, i]
+        width, h = (self.u[i + 1] - self.u[i])[..., None], (u - self.u[i])[..., None]
+        secant = (self.points[row, i + 1] - start) / width
+        bend = self.slopes[row, i + 1] + slope - 2.0 * secant
+        a = bend / width**2
+        b = (secant - slope - bend) / width
+        return (
+            ((a * h + b) * h + slope) * h + start,
+            (3 * a * h + 2 * b) * h + slope,
+            6 * a * h + 2 * b,
+        )
+
+    @property
+    def height(self) -> Array:
+        """Largest height between the sides at one x, (k,)."""
+        middle = len(self.u) // 2
+        reach = max(0, min(WINDOW, (middle - 3) // 2))
+        paired = self.points[:, :middle, 1] - self.points[:, :middle:-1, 1]
+        best, rows = np.argmax(paired, axis=1), np.arange(len(paired))
+        for _ in range(middle):
+            at = np.clip(best[rows], reach + 1, max(reach + 1, middle - reach - 2))
+            window = at[:, None] + np.arange(-reach, reach + 1)
+            heights = Cubics(self.u, self.points[rows], self.slopes[rows])._gap(
+                self.u[window], 1.0 - self.u[window]
+            )[0]
+            best[rows] = found = window[np.arange(len(rows)), np.argmax(heights, axis=1)]
+            rows = rows[(np.abs(found - at) == reach) & (found != at)]
+            if not rows.size:
+                break
+
+        height, opposite = np.empty(0), 1.0 - self.u[best]
+
+        def rising(u: Array) -> tuple[Array, Array]:
+            nonlocal height, opposite
+            height, slope, bend, opposite = self._gap(u, opposite)
+            return slope, bend
+
+        falling(rising, self.u[best - 1], self.u[best], self.u[best + 1])
+        return height
+
+    def _gap(self, u: Array, w: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the height between the sides at suction parameters `u`, and two derivatives.
+
+        `w` is a first guess of the pressure side's parameters at the same x; those found are
+        returned last.
+        """
+        p, p1, p2 = self.at(u)
+        for _ in range(8):  # Newton for the pressure-side point at the same x
+            q, q1, q2 = self.at(w)
+            step = (q[..., 0] - p[..., 0]) / q1[..., 0]
+            w = np.clip(w - step, 0.5, 1.0)
+            if np.all(np.abs(step) <= PARAMETER_TOLERANCE):
+                break
+        q = q - q1 * step[..., None]  # the last step to first order: 1e-12 is left
+        rate = p1[..., 0] / q1[..., 0]  # dw / du at equal x
+        bend = (p2[..., 0] - q2[..., 0] * rate**2) / q1[..., 0]
+        return (
+            p[..., 1] - q[..., 1],
+            p1[..., 1] - q1[..., 1] * rate,
+            p2[..., 1] - q2[..., 1] * rate**2 - q1[..., 1] * bend,
+            w,
+        )

@@ -1,0 +1,78 @@
+"""Sections with the same landmark parameters to their splines, by one matrix product."""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from bladegen.airfoils.curves import SectionCurves
+from bladegen.support.arrays import Array, readonly
+
+__all__ = ["SectionSplines"]
+
+REMEMBERED = 8  # sets of landmark parameters whose matrices are kept, 1.3 MB each for 401
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _slope_matrix(parameters_in_bytes: bytes) -> Array:
+    """Return the matrix of `SectionSplines`, shared by all blades with the same landmarks."""
+    from scipy.interpolate import CubicSpline
+
+    u = np.frombuffer(parameters_in_bytes)
+    return readonly(CubicSpline(u, np.eye(len(u)))(u, 1))
+
+
+@dataclass(frozen=True, eq=False)
+class SectionSplines:
+    """Fits splines to any number of sections with the same landmark parameters.
+
+    Parameters
+    ----------
+    u : (n,) array
+        Landmark parameters, 0.5 at the leading-edge landmark, symmetric about it.
+
+    Notes
+    -----
+    A spline's slopes are linear in its points, so a fit is one matrix product.
+    """
+
+    u: Array
+
+    @cached_property
+    def _slopes(self) -> Array:
+        """The (n, n) matrix from points to the slopes of their not-a-knot cubic spline."""
+        return _slope_matrix(self.u.tobytes())
+
+    def values(self, u: Array, derivative: int = 0) -> Array:
+        """Return the (m, n) matrix from landmarks to points, or derivatives, at `u`."""
+        from scipy.interpolate import CubicSpline
+
+        matrix: Array = CubicSpline(self.u, np.eye(len(self.u)))(u, derivative)
+        return matrix
+
+    def fit(self, points: Array) -> "SectionCurves":
+        """Return the splines through landmarks (k, n, 2)."""
+        n, k = len(self.u), len(points)
+        columns = np.moveaxis(points, 1, 0).reshape(n, 2 * k)  # one product for all sections
+        slopes = np.moveaxis((self._slopes @ columns).reshape(n, k, 2), 0, 1)
+        return SectionCurves(self.u, points, slopes)
+
+    def normalising(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array]:
+        """Return the maps that bring sections to unit chord and relative thickness, exactly.
+
+        Both are maps of GL2 that move no point of the Grassmannian: a scaling, and a
+        stretch normal to the chord line, which keeps leading edge and trailing-edge midpoint.
+
+        Parameters
+        ----------
+        points : (k, n, 2) array
+            Sections in airfoil axes, close to unit chord.
+        relative_thickness : (k,) array, optional
+            The thickness over chord to reach, not many times its own; None leaves it.
+
+        Returns
+        -------
+        A, c : (k, 2, 2), (k, 2) arrays
+            ``points @ A + c`` has unit chord and the thickness.
+        """
+        return self.fit(points).normalising(relative_thickness)

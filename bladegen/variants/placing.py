@@ -1,0 +1,69 @@
+"""Where the sections of many variants of a blade stand: chord, twist, offset, axis."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladegen.blade.blade import Blade
+from bladegen.blade.deformation import AffineChange, Window, faded
+from bladegen.blade.planform import placement
+from bladegen.support.arrays import Array, ArrayLike
+
+__all__ = ["Placing", "column"]
+
+
+@dataclass(frozen=True, eq=False)
+class Placing:
+    """Places a blade's sections at span fractions `eta` (k,), for many changes at once."""
+
+    blade: Blade
+    eta: Array
+
+    def __call__(
+        self, change: AffineChange, weight: Array, count: int
+    ) -> tuple[Array, Array, Array]:
+        """Return the maps (b, k, 3, 3) of (x, y, 1) to space, and chord and twist (b, k).
+
+        What acts within a window does so by its weights (k,).
+        """
+        eta, definition = self.eta, self.blade.definition
+        widening, whole = column(change.widening), column(change.chord_scale)
+        chord = whole * faded(self.blade.chord(eta), weight, widening)
+        twist = faded(
+            column(change.twist_scale) * self.blade.twist(eta), weight, 1.0, column(change.twist)
+        )
+        offset_y = whole * faded(definition.offset_y(eta), weight, widening)
+        offset = np.stack(np.broadcast_arrays(-offset_y, definition.offset_x(eta)), axis=-1)
+        axis, frames = self._axis(np.asarray(change.prebend_scale, dtype=np.float64))
+        axes, start = placement(chord, twist, offset, axis, frames)
+        shape = count, len(eta)
+        to_space = np.concatenate([axes, start[..., None, :]], axis=-2)
+        return (
+            np.broadcast_to(to_space, (*shape, 3, 3)),
+            np.array(np.broadcast_to(chord, shape)),
+            np.array(np.broadcast_to(twist, shape)),
+        )
+
+    def _axis(self, prebend_scale: Array) -> tuple[Array, Array]:
+        """Return reference axes (b or 1, k, 3) and section frames (b or 1, k, 3, 3)."""
+        values, inverse = np.unique(prebend_scale, return_inverse=True)
+        standing = [self._own_axis if value == 1.0 else self._bent(value) for value in values]
+        axes, frames = (np.stack(parts) for parts in zip(*standing, strict=True))
+        index = np.atleast_1d(inverse)
+        return axes[index], frames[index]
+
+    @cached_property
+    def _own_axis(self) -> tuple[Array, Array]:
+        return self._bent(1.0)
+
+    def _bent(self, prebend_scale: float) -> tuple[Array, Array]:
+        """Return the axis and the frames, which are carried along it; no window touches them."""
+        change = AffineChange(prebend_scale=float(prebend_scale))
+        axis = change.applied(self.blade.definition, Window()).axis
+        return axis(self.eta), self.blade.planes(axis)(self.eta)
+
+
+def column(value: ArrayLike) -> Array:
+    """Return a number, or one a variant (b,), as (1, 1) or (b, 1)."""
+    return np.atleast_1d(np.asarray(value, dtype=np.float64))[:, None]

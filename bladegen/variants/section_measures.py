@@ -1,0 +1,195 @@
+"""Compiled: what a section measures on its splines: its noses, and its thickest place.
+
+`curves.SectionCurves` once more, for one section in a loop of a compiled function, with the
+notation and the tolerances there.  Points are (2, n): x, then y; landmarks i and -1 - i lie
+opposite.  Splines are linear in features (`batch`), and so are their slopes at landmarks.
+"""
+
+from math import copysign
+from typing import NamedTuple
+
+from bladegen.airfoils.curves import SAME_NOSE
+from bladegen.airfoils.plane_maps import Numbers, turned
+from bladegen.airfoils.resizing import RIVAL
+from bladegen.airfoils.roots import ITERATIONS, PARAMETER_TOLERANCE
+from bladegen.support.arrays import Array
+from bladegen.support.compiled import compiled
+
+__all__ = ["Section", "noses", "thickest"]
+
+ACROSS = 8  # Newton steps to the point at the same x on the other side; two are usual
+REACH = 4.0  # landmarks that one step towards the thickest place may pass
+
+
+class Section(NamedTuple):
+    """A section: u (n,), slopes of the features (n, F), coefficients (F, 2), points (2, n)."""
+
+    u: Array
+    slopes: Array
+    c: Array
+    points: Array
+
+
+@compiled
+def noses(s: Section, work: Array) -> tuple[Numbers, ...]:
+    """Return the point farthest from the trailing-edge midpoint, its rival or itself, and that."""
+    points = s.points
+    first = points.shape[1] // 4  # noses are in the front half
+    edge = 0.5 * (points[0, 0] + points[0, -1]), 0.5 * (points[1, 0] + points[1, -1])
+    x, y = points[0, first:-first], points[1, first:-first]
+    squares = work[: len(x)]
+    for i in range(len(x)):
+        squares[i] = (x[i] - edge[0]) ** 2 + (y[i] - edge[1]) ** 2
+    best, alone = highest(squares)
+    other, least = best, squares[best] * (1.0 - RIVAL)
+    if not alone:
+        for i in range(1, len(squares) - 1):
+            here = squares[i]
+            rises = here > least and here > squares[i - 1] and here >= squares[i + 1]
+            if rises and abs(i - best) > SAME_NOSE:
+                other, least = i, here
+    one = two = peak(s, edge, best + first)
+    if other != best:
+        two = peak(s, edge, other + first)
+    return one, two, edge
+
+
+@compiled
+def highest(values: Array) -> tuple[int, bool]:
+    """Return where the largest of some values stands, and whether it is known to be alone."""
+    turns, best = 0, 0
+    for i in range(len(values) - 2):  # quicker than to compare all with the largest so far
+        best += values[i + 1] > values[i]
+        turns += (values[i + 2] > values[i + 1]) != (values[i + 1] > values[i])
+    if turns == 1 and values[1] > values[0]:
+        return best, True
+    best = 0
+    for i in range(len(values)):
+        if values[i] > values[best]:
+            best = i
+    return best, False
+
+
+@compiled
+def peak(s: Section, edge: Numbers, landmark: int) -> Numbers:
+    """Climb from a landmark to the point beside it that is farthest from the edge."""
+    cell = landmark
+    px, py = piece(s, cell, (1.0, 0.0))
+    h = 0.0
+    if (px[0] - edge[0]) * px[1] + (py[0] - edge[1]) * py[1] < 0.0:
+        cell -= 1
+        px, py = piece(s, cell, (1.0, 0.0))
+        h = s.u[landmark] - s.u[cell]
+    low, high = 0.0, s.u[cell + 1] - s.u[cell]
+    for _ in range(ITERATIONS):
+        x, x1, x2 = at(px, h)
+        y, y1, y2 = at(py, h)
+        x, y = x - edge[0], y - edge[1]
+        slope = x * x1 + y * y1
+        low, high = (h, high) if slope > 0.0 else (low, h)
+        start, h = h, h - slope / (x1 * x1 + y1 * y1 + x * x2 + y * y2)
+        if not low <= h <= high:
+            h = 0.5 * (low + high)
+        if abs(h - start) <= PARAMETER_TOLERANCE:
+            break
+    return at(px, h)[0], at(py, h)[0]
+
+
+@compiled
+def piece(s: Section, i: int, along: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the cubics from landmark i to the next, along a direction and normal to it."""
+    x0 = y0 = x1 = y1 = 0.0
+    for f in range(len(s.c)):
+        x0 += s.slopes[i, f] * s.c[f, 0]
+        y0 += s.slopes[i, f] * s.c[f, 1]
+        x1 += s.slopes[i + 1, f] * s.c[f, 0]
+        y1 += s.slopes[i + 1, f] * s.c[f, 1]
+    start = turned(s.points[0, i], s.points[1, i], along)
+    end = turned(s.points[0, i + 1], s.points[1, i + 1], along)
+    slope, last = turned(x0, y0, along), turned(x1, y1, along)
+    width = s.u[i + 1] - s.u[i]
+    return (
+        cubic(start[0], end[0], slope[0], last[0], width),
+        cubic(start[1], end[1], slope[1], last[1], width),
+    )
+
+
+@compiled
+def cubic(start: float, end: float, slope: float, last: float, width: float) -> Numbers:
+    """Return a cubic between two values with slopes there, constant term first."""
+    secant = (end - start) / width
+    bend = last + slope - 2.0 * secant
+    return start, slope, (secant - slope - bend) / width, bend / (width * width)
+
+
+@compiled
+def at(p: Numbers, h: float) -> Numbers:
+    """Return a cubic's value and two derivatives."""
+    return (
+        p[0] + h * (p[1] + h * (p[2] + h * p[3])),
+        p[1] + h * (2.0 * p[2] + 3.0 * h * p[3]),
+        2.0 * p[2] + 6.0 * h * p[3],
+    )
+
+
+@compiled
+def cell_of(u: Array, t: float, cell: int) -> int:
+    """Return the cell that holds a parameter, sought from another one."""
+    while cell < len(u) - 2 and t >= u[cell + 1]:
+        cell += 1
+    while cell > 0 and t < u[cell]:
+        cell -= 1
+    return cell
+
+
+@compiled
+def thickest(s: Section, along: Numbers, work: Array) -> float:
+    """Return the largest distance between the sides normal to a direction, at one place along it.
+
+    Newton's method climbs from the thickest pair of landmarks, kept by bisection between places
+    where the distance rises and falls.
+    """
+    u, points = s.u, s.points
+    middle = len(u) // 2
+    heights = work[:middle]
+    for i in range(middle):
+        x, y = points[0, i] - points[0, -1 - i], points[1, i] - points[1, -1 - i]
+        heights[i] = y * along[0] - x * along[1]
+    cell = 1 + highest(heights[1 : middle - 1])[0]
+    across = len(u) - 2 - cell
+    t, w, low, high = u[cell], u[across + 1], u[1], u[middle - 1]
+    px, py = piece(s, cell, along)
+    qx, qy = piece(s, across, along)
+    height = 0.0
+    for _ in range(ITERATIONS):
+        if not u[cell] <= t <= u[cell + 1]:
+            cell = cell_of(u, t, cell)
+            px, py = piece(s, cell, along)
+        x, x1, x2 = at(px, t - u[cell])
+        y, y1, y2 = at(py, t - u[cell])
+        step = 1.0
+        v = v1 = v2 = z1 = z2 = 0.0
+        for _ in range(ACROSS):
+            if not u[across] <= w <= u[across + 1]:
+                across = cell_of(u, w, across)
+                qx, qy = piece(s, across, along)
+            z, z1, z2 = at(qx, w - u[across])
+            v, v1, v2 = at(qy, w - u[across])
+            step = (z - x) / z1
+            w = min(max(w - step, 0.5), 1.0)
+            if abs(step) <= PARAMETER_TOLERANCE:
+                break
+        rate = x1 / z1
+        rising = y1 - v1 * rate
+        bending = y2 - v2 * rate * rate - v1 * (x2 - z2 * rate * rate) / z1
+        low, high = (t, high) if rising > 0.0 else (low, t)
+        limit = REACH * (u[cell + 1] - u[cell])
+        change = -rising / bending if bending < 0.0 else copysign(limit, rising)
+        start, t = t, t + min(max(change, -limit), limit)
+        if not low <= t <= high:
+            t = 0.5 * (low + high)
+        height = y - v + v1 * step + 0.5 * rising * (t - start)
+        if abs(t - start) <= PARAMETER_TOLERANCE:
+            break
+        w += rate * (t - start)
+    return height

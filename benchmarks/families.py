@@ -31,7 +31,8 @@ from bladegen.exports import exporters
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
 from bladegen.families.family import BLOCK
-from bladegen.families.run import Order, run
+from bladegen.families.order import Order
+from bladegen.families.run import run
 from bladegen.surface import fitting
 
 THREADS = 2

@@ -14,7 +14,8 @@ import pyarrow.parquet as pq
 import zarr
 
 import bladegen as bg
-from bladegen.families.run import Order, run
+from bladegen.families.order import Order
+from bladegen.families.run import run
 
 
 def main(target: Path) -> None:

@@ -40,6 +40,7 @@ from bladegen.errors import BladegenError
 from bladegen.exports.options import Options
 from bladegen.formats import writing
 from bladegen.formats.airfoils.reading import read_airfoil
+from bladegen.formats.baselines import baselines
 from bladegen.formats.windio.yaml_file import parse_yaml
 from bladegen.shapes import cst, database
 from bladegen.support import archive
@@ -475,7 +476,7 @@ def changed_model(suffix: str, few: tuple[str, ...], rng: Random) -> Files:
 def airfoils() -> tuple[np.ndarray, ...]:
     """Airfoils of published files and others."""
     own = tuple(naca(t, c, gap, m) for t, c, gap, m in ((0.12, 0.0, 0, 20), (0.3, 0.04, 0.01, 60)))
-    return (*own, *database.baselines().values())
+    return (*own, *baselines().values())
 
 
 def changed_airfoil(rng: Random) -> Files:

@@ -15,7 +15,7 @@ import bladegen as bg
 from bladegen.cli import commands as cli
 from bladegen.errors import BladegenError
 from bladegen.families.identity import fingerprint
-from bladegen.families.run import Order
+from bladegen.families.order import Order
 from bladegen.views import contact_sheet
 
 READING = {"info", "check", "convert", "build", "perturb", "family", "preview", "plot", "studio"}

@@ -17,8 +17,8 @@ from bladegen.definition.blade_definition import (
     Distribution,
     ReferenceAxis,
     Station,
-    stations_by_thickness,
 )
+from bladegen.definition.by_thickness import stations_by_thickness
 from bladegen.errors import DefinitionError
 from bladegen.support.arrays import Array
 from strategies import circle, ellipse

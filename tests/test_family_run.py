@@ -19,7 +19,8 @@ from bladegen.errors import BladegenError, PerturbationError
 from bladegen.exports.options import Options
 from bladegen.families.family import BLOCK
 from bladegen.families.folder import FamilyFolder, sections_digest
-from bladegen.families.run import Order, run
+from bladegen.families.order import Order
+from bladegen.families.run import run
 from bladegen.measures import checks
 from bladegen.measures.properties import volume
 from bladegen.support.files import digest_of

@@ -7,7 +7,8 @@ import bladegen as bg
 from bladegen.errors import FamilyError
 from bladegen.families import forecasts
 from bladegen.families.forecasts import Forecast, duration, free_bytes, require_room, size
-from bladegen.families.run import Order, run
+from bladegen.families.order import Order
+from bladegen.families.run import run
 
 BLADE = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=51)
 BYTES = 16 * 51 * 3 * 4  # of a variant's sections

@@ -12,7 +12,8 @@ import bladegen as bg
 from bladegen.cli import commands
 from bladegen.exports.build import build
 from bladegen.exports.options import Options
-from bladegen.families.run import Order, run
+from bladegen.families.order import Order
+from bladegen.families.run import run
 
 LOGGER = logging.getLogger("bladegen")
 

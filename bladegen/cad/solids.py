@@ -95,7 +95,7 @@ def solid(
     sections : int, optional
         Use exactly so many sections instead.
     spans : (k,) array, optional
-        Sections to begin with (`net.fitted`).
+        Sections to begin with (`fitting.fitted`).
     tip : callable
         `tips.flat_tip` or `tips.round_tip`.
     progress : callable

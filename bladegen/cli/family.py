@@ -89,7 +89,8 @@ def family(
     """Make a family of perturbed blades: sections, a manifest, files and a contact sheet."""
     from bladegen.cli.texts import factor_bounds, factor_table, span_window
     from bladegen.families.family import family as plan
-    from bladegen.families.run import Order, run
+    from bladegen.families.order import Order
+    from bladegen.families.run import run
     from bladegen.shapes.shape_space import ShapeSpace
 
     suffixes = suffixes_of(formats)

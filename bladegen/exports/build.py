@@ -7,10 +7,8 @@ as they lie on the disk.  Lengths are metres unless a name says otherwise.
 import json
 import logging
 import platform
-import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, replace
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -22,7 +20,8 @@ from bladegen.cad import exchange, shapes
 from bladegen.cad.rotor import Rotor, write_glb, write_step
 from bladegen.errors import ExportError, PromiseError
 from bladegen.exports import exporters, marks
-from bladegen.exports.inventory import REPORT, entry_of, others
+from bladegen.exports.inventory import REPORT, others
+from bladegen.exports.ledger import Ledger
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.products import Products
 from bladegen.exports.provenance import Provenance, word
@@ -39,7 +38,6 @@ from bladegen.views import combs
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
 
 logger = logging.getLogger(__name__)
-
 DEFAULT_FORMATS = ("step", "stl", "glb", "png")
 LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk", "h5py")
 SPANWISE = ".spanwise.csv"
@@ -111,7 +109,7 @@ def _built(
             raise ExportError(writers.MIRRORED)
     options = options or Options()
     products = Products(blade, options, progress)
-    ledger = _Ledger(progress)
+    ledger = Ledger(progress)
     report: dict[str, Any] = {
         "blade": blade.name,
         "source": Path(blade.definition.source).name,
@@ -162,7 +160,7 @@ def _built(
     return report
 
 
-def _rotor(rotor: Rotor, products: Products, stem: Path, ledger: "_Ledger") -> PromiseError | None:
+def _rotor(rotor: Rotor, products: Products, stem: Path, ledger: Ledger) -> PromiseError | None:
     """Write a rotor's two files; return what was asked of its solids and is not so."""
     made, miss = stem.with_name(f"{stem.name}.step"), None
     ledger.progress(f"writing {made.name}")
@@ -185,39 +183,6 @@ def _rotor(rotor: Rotor, products: Products, stem: Path, ledger: "_Ledger") -> P
     with ledger.writing(stem.with_name(f"{stem.name}.glb"), "rotor", triangles) as temporary:
         write_glb(rotor, products.mesh, temporary)
     return miss
-
-
-@dataclass(frozen=True)
-class _Ledger:
-    """What was written, and what time each stage took [s]."""
-
-    progress: Callable[[str], None]
-    files: list[dict[str, Any]] = field(default_factory=list)
-    seconds: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def timed(self, stage: str) -> Iterator[None]:
-        """Add the time spent within to a stage's."""
-        start = time.perf_counter()
-        try:
-            yield
-        finally:
-            spent = time.perf_counter() - start
-            self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
-            logger.debug("%s: %.2f s", stage, spent)
-
-    @contextmanager
-    def writing(self, path: Path, stage: str, made: Provenance) -> Iterator[Path]:
-        """Write a file under a temporary name within, mark it, and note it once it is whole."""
-        self.progress(f"writing {path.name}")
-        with self.timed(stage), replacing(path) as temporary:
-            yield temporary
-            marks.put(temporary, made)
-        self.note(path, made)
-
-    def note(self, path: Path, made: Provenance) -> None:
-        """Add a file that lies on the disk; a report that does not fit the file beside it shows."""
-        self.files.append(entry_of(path, made))
 
 
 def _made_here(products: Products, path: Path) -> Provenance | None:

@@ -61,7 +61,7 @@ class Options:
     spacing : Spacing
         Grids: how many points, and cell sizes where it matters.
     polars, reynolds : optional
-        Definitions: where polars are from, as for `writers.write`.
+        Definitions: where polars are from, as for `formats.writing.write`.
     """
 
     tolerance: float = solids.DEFAULT_TOLERANCE

@@ -313,7 +313,7 @@ def family(
     design : str or Design
         One of `designs.DESIGNS`, or a design of one's own (`designs.tabulated`).
     bounds : mapping of str to (low, high), optional
-        What else varies and between which bounds: see `designs.factors`; twist in radians.
+        What else varies and between which bounds: see `factors.factors`; twist in radians.
     reach : float
         Share of the space's bounds that is used.
     window : Window, optional

@@ -51,7 +51,7 @@ class Entry:
     label : str
         What people read.
     source : str
-        What `readers.read` takes.
+        What `bladegen.read` takes.
     named : str
         What commands call it: the bundled name, or the file as its owner named it.
     airfoils : str, optional

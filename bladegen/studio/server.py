@@ -92,13 +92,13 @@ def serve(
     Parameters
     ----------
     source : str
-        The blade to begin with, as `readers.read` takes it.
+        The blade to begin with, as `bladegen.read` takes it.
     host, port
         Where to listen: see `bound`.
     told : callable
         Told once it is served.
     airfoils : Path, optional
-        The folder of the blade's airfoil files, as `readers.read` takes it.
+        The folder of the blade's airfoil files, as `bladegen.read` takes it.
 
     Raises
     ------

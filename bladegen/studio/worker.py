@@ -38,7 +38,7 @@ class Job:
     Parameters
     ----------
     source : str
-        The blade, as `readers.read` takes it.
+        The blade, as `bladegen.read` takes it.
     state : State
         What is changed of it.
     suffix : str
@@ -46,7 +46,7 @@ class Job:
     folder : str
         Where to.
     airfoils : str, optional
-        The folder of the blade's airfoil files, as `readers.read` takes it.
+        The folder of the blade's airfoil files, as `bladegen.read` takes it.
     """
 
     source: str

@@ -1,4 +1,4 @@
-"""Airfoils of a document: found by name, checked, and made contours by `readers.contours`.
+"""Airfoils of a document: found by name, checked, and made contours by `contours`.
 
 A contour runs trailing edge -> leading edge -> trailing edge in chords, either side first,
 open or closed at its end; which way round it runs is settled by `bladegen.airfoils.landmarks`.

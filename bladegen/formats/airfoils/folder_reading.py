@@ -1,6 +1,6 @@
 """Airfoil shapes that stand in files of their own beside a blade file.
 
-A folder of coordinate files (`readers.airfoil_files`), with or without `index.csv` that bladegen
+A folder of coordinate files (`reading`), with or without `index.csv` that bladegen
 writes: its columns are airfoil, file, relative_thickness and, where the blade file cannot say it,
 span_fraction.  Without it an airfoil is known by its file's name, its thickness by its coordinates;
 polars and other files that stand beside shapes are passed over, and reported.

@@ -16,8 +16,8 @@ from bladegen.definition.blade_definition import (
     Distribution,
     ReferenceAxis,
     Station,
-    stations_by_thickness,
 )
+from bladegen.definition.by_thickness import stations_by_thickness
 from bladegen.errors import DefinitionError, Finding
 from bladegen.formats.common.document import Notes
 from bladegen.support.arrays import Array
@@ -59,7 +59,7 @@ def assemble(
     path : Path
         The file.
     values : dict of (m,) arrays
-        By the keys of `readers.table`: eta, z, chord, twist, ...; NaN where there is none.
+        By the keys of `table`: eta, z, chord, twist, ...; NaN where there is none.
     rows : tuple of int
         The table's rows in the file.
     schedule : list of (eta, name, row)

@@ -19,8 +19,8 @@ from bladegen.definition.blade_definition import (
     BladeDefinition,
     Distribution,
     ReferenceAxis,
-    stations_by_thickness,
 )
+from bladegen.definition.by_thickness import stations_by_thickness
 from bladegen.definition.conventions import axis_finding, axis_of_line, curve_length
 from bladegen.errors import DefinitionError, Finding
 from bladegen.formats.airfoils.folder_reading import beside, placed_airfoils, thick_airfoils

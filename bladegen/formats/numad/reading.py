@@ -6,7 +6,7 @@ empty span: span [m], twist [deg, leading edge upwind], chord [m], thickness [%]
 aerodynamic centre [chords] in A to F, empty where there is no value; airfoils in H (span [m])
 and I (name).  The offset is the distance from leading edge to pitch axis; with natural offset it
 is counted from the place of the greatest thickness.  There is no prebend and no sweep.  The older
-workbooks, and project files, are `readers.numad_stations`.
+workbooks, and project files, are `stations`.
 """
 
 import math

@@ -17,8 +17,8 @@ from bladegen.definition.blade_definition import (
     ReferenceAxis,
     Rotor,
     Station,
-    stations_by_thickness,
 )
+from bladegen.definition.by_thickness import stations_by_thickness
 from bladegen.errors import DefinitionError
 from bladegen.formats.airfoils.by_name import airfoils
 from bladegen.formats.airfoils.contours import thickness

@@ -1,0 +1,87 @@
+"""One block of a family, whole: sections, rows of the manifest, and files of its variants."""
+
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.blade.blade import Blade
+from bladegen.errors import PerturbationError, PromiseError
+from bladegen.exports import exporters
+from bladegen.exports.products import Products
+from bladegen.families.family import Block
+from bladegen.families.folder import FLOAT_TYPES
+from bladegen.families.manifest_rows import drawn_again, rows_of
+from bladegen.families.order import Order
+from bladegen.support.arrays import Indices
+from bladegen.support.files import digest_of
+
+__all__ = ["Made", "make_block", "sections_of"]
+
+TIMESTAMP = "1970-01-01T00:00:00"  # in STEP files, so that the same blade makes the same bytes
+Made = tuple[int, list[str], float]  # a block's number, what was drawn again and why, seconds
+
+
+def make_block(order: Order, number: int) -> Made:
+    """Make one block, whole."""
+    from threadpoolctl import threadpool_limits
+
+    family, start = order.family, time.monotonic()
+    index = np.arange(number * order.block, min((number + 1) * order.block, len(family)))
+    with threadpool_limits(1):  # the same sums in the same order, whatever the machine
+        block = sections_of(order, index)
+        rows = rows_of(family, block)
+        faults = _faults(order, block)
+        for suffix in order.suffixes:
+            rows |= _exported(order, block, suffix, faults)
+    order.place.write_block(number, block, rows)
+    return number, drawn_again(family, block), time.monotonic() - start
+
+
+def sections_of(order: Order, index: Indices) -> Block:
+    """Make the sections of some variants, in one thread as all that they are made from."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1):
+        return order.family.block(index, dtype=FLOAT_TYPES[order.dtype], measured=True)
+
+
+def _faults(order: Order, block: Block) -> dict[int, str]:
+    """Return by place what is wrong, between a block's sections, with variants to be written."""
+    found = {}
+    for place in block.index[block.valid].tolist() if order.suffixes else ():
+        try:
+            order.family.named(block, place).require_sound(allow_odd=order.family.allow_odd)
+        except PerturbationError as error:
+            found[place] = str(error)
+    return found
+
+
+def _exported(order: Order, block: Block, suffix: str, faults: dict[int, str]) -> dict[str, Any]:
+    """Write the sound variants in one format; return the columns that say so."""
+    names, digests, problems = [], [], []
+    for place, valid in zip(block.index, block.valid, strict=True):
+        name, digest, problem = "", "", ""
+        if valid and place in faults:
+            problem = faults[place]
+        elif valid:
+            path = order.place.blades / f"{order.family.name(int(place))}{suffix}"
+            made, problem = _export(order, order.family.named(block, int(place)), path)
+            name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
+        names.append(name)
+        digests.append(digest)
+        problems.append(problem)
+    kind = suffix.lstrip(".")
+    return {f"{kind}_file": names, f"{kind}_sha256": digests, f"{kind}_problem": problems}
+
+
+def _export(order: Order, blade: Blade, path: Path) -> tuple[Path, str]:
+    """Write one file; return it, under another name if something is wrong, and what, or ""."""
+    options = replace(order.options, timestamp=TIMESTAMP, spans=order.spans)
+    try:
+        exporters.write(Products(blade, options), path)
+    except PromiseError as error:
+        return error.kept or path, str(error).replace(f"{path.parent}/", "")
+    return path, ""

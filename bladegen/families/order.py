@@ -1,0 +1,86 @@
+"""What a run of a family writes, and where."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from bladegen.errors import FamilyError
+from bladegen.exports.options import Options
+from bladegen.exports.registry import format_of
+from bladegen.families.family import BLOCK, Family
+from bladegen.families.folder import FLOAT_TYPES, FamilyFolder
+from bladegen.families.identity import fingerprint, identity
+from bladegen.support.arrays import Array
+from bladegen.surface.fitting import fitted
+
+__all__ = ["Order"]
+
+FEW = 8  # variants in a block that writes files for each
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """What is to be written where.
+
+    Parameters
+    ----------
+    family : Family
+        The variants.
+    target : Path
+        The folder; workers elsewhere must see it under the same name.
+    formats : tuple of str
+        Suffixes of files for each sound variant; none by default.
+    dtype : str
+        Of the stored sections: "float32" or "float64".
+    options : Options
+        How files are made.
+    """
+
+    family: Family
+    target: Path
+    formats: tuple[str, ...] = ()
+    dtype: str = "float32"
+    options: Options = field(default_factory=Options)
+
+    def __post_init__(self) -> None:
+        if self.dtype not in FLOAT_TYPES:
+            raise FamilyError(f"dtype: got {self.dtype!r}, allowed are {', '.join(FLOAT_TYPES)}")
+        for suffix in self.suffixes:
+            format_of(Path(f"x{suffix}"))
+        # Sums depend in their last digit on how many threads add them up: what the family has
+        # computed so far is left behind, and `making.make_block` computes it again in one thread.
+        fresh = replace(self.family, blade=replace(self.family.blade))
+        object.__setattr__(self, "family", fresh)
+
+    @property
+    def suffixes(self) -> list[str]:
+        """The formats' suffixes, with their dots."""
+        return [f".{suffix.lower().lstrip('.')}" for suffix in self.formats]
+
+    @property
+    def place(self) -> FamilyFolder:
+        """The folder."""
+        return FamilyFolder(self.target, self.block)
+
+    @property
+    def identity(self) -> dict[str, Any]:
+        """What the folder will hold."""
+        made = {"dtype": self.dtype, "formats": self.suffixes}
+        if self.suffixes:
+            made["options_fingerprint"] = fingerprint(self.options)
+        return identity(self.family) | made
+
+    @property
+    def block(self) -> int:
+        """How many variants are made at once: fewer where each takes a second."""
+        return FEW if self.suffixes else BLOCK
+
+    @cached_property
+    def spans(self) -> Array:
+        """The sections of the baseline's solid, for the variants' solids to begin with."""
+        return fitted(self.family.blade, self.options.tolerance)[0].v
+
+    def blocks(self) -> list[int]:
+        """Return the numbers of the blocks that are still to be made."""
+        return self.place.open_blocks(len(self.family))

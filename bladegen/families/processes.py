@@ -1,0 +1,97 @@
+"""Blocks of a family made elsewhere: in processes of this machine, or on a Dask cluster."""
+
+import logging
+import os
+import signal
+from collections.abc import Generator
+from itertools import islice
+from typing import Any
+
+from bladegen.errors import ExportError, FamilyError
+from bladegen.families.making import Made, make_block
+from bladegen.families.order import Order
+
+__all__ = ["in_processes", "on_cluster"]
+
+logger = logging.getLogger(__name__)
+
+AHEAD = 4  # blocks a worker that are handed out before they can begin: plans may be long
+RESTARTS = 5  # of a pool whose worker died, without any block done in between
+_ORDER: list[Order] = []  # of a worker process, set once when it starts
+
+
+def _start(order: Order, parent: int) -> None:
+    from bladegen.support.workers import end_with
+
+    end_with(parent)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to deal with
+    _ORDER[:] = [order]
+
+
+def _make_here(number: int) -> Made:
+    return make_block(_ORDER[0], number)
+
+
+def in_processes(order: Order, left: list[int], jobs: int) -> Generator[Made]:
+    """Make blocks in processes of this machine; begin again with what a dead one left."""
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+    from concurrent.futures.process import BrokenProcessPool
+    from multiprocessing import active_children, get_context
+
+    restarts, others = 0, set(active_children())
+    open_blocks = dict.fromkeys(left)
+    while open_blocks:
+        pool = ProcessPoolExecutor(
+            jobs, mp_context=get_context("spawn"), initializer=_start, initargs=(order, os.getpid())
+        )
+        coming = iter(list(open_blocks))
+        try:
+            waiting = {pool.submit(_make_here, number) for number in islice(coming, AHEAD * jobs)}
+            while waiting:
+                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                for task in finished:
+                    made = task.result()
+                    del open_blocks[made[0]]
+                    restarts = 0
+                    waiting |= {pool.submit(_make_here, number) for number in islice(coming, 1)}
+                    yield made
+        except BrokenProcessPool:
+            restarts += 1
+            logger.warning("%s: a worker process died, another one goes on", order.target)
+            if restarts > RESTARTS:
+                raise FamilyError(
+                    f"{order.target}: worker processes died {restarts} times in a row (out of "
+                    "memory?); fewer --jobs and --resume go on"
+                ) from None
+        except BaseException:  # told to stop: nobody waits for what is at work
+            for process in set(active_children()) - others:
+                process.terminate()
+            raise
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def on_cluster(order: Order, left: list[int], client: Any) -> Generator[Made]:
+    """Make blocks on a Dask cluster; it hands a dead worker's blocks to the others."""
+    from distributed import as_completed
+
+    shared = client.scatter(order, broadcast=True)
+    coming, tasks = iter(left), as_completed()
+
+    def submit(count: int) -> None:
+        for number in islice(coming, count):
+            tasks.add(client.submit(make_block, shared, number, pure=False, retries=3))
+
+    submit(AHEAD * max(1, len(client.nthreads())))
+    try:
+        for task in tasks:
+            submit(1)
+            yield task.result()
+    except (ExportError, FamilyError):
+        raise
+    except Exception as error:  # a cluster's own failures are of many kinds
+        raise FamilyError(
+            f"{order.target}: the cluster failed: {type(error).__name__}: {error}; --resume goes on"
+        ) from None
+    finally:
+        client.cancel(list(tasks.futures))

@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen.cli.view import What
 from bladegen.shapes import grassmann
-from bladegen.views import blade_plots
+from bladegen.views import blade_plots, path_plot
 
 
 @pytest.fixture(scope="module")
@@ -53,9 +53,9 @@ def test_a_swept_blade_shows_its_sweep(blade):
 
 
 def test_the_path_shows_distances_and_coordinates(blade):
-    away, speed, coordinates, _ = blade_plots.path(blade).axes
+    away, speed, coordinates, _ = path_plot.path(blade).axes
     space = bg.ShapeSpace.bundled()
-    eta = np.linspace(0, 1, blade_plots.SHAPES)
+    eta = np.linspace(0, 1, path_plot.SHAPES)
     for k, line in enumerate(lines(coordinates)):
         assert_allclose(line.get_ydata(), space.encode(blade.shapes(eta)[1])[:, k])
     stations = blade.shapes(np.unique(blade.eta))[1]
@@ -68,12 +68,12 @@ def test_the_path_shows_distances_and_coordinates(blade):
         lines(away)[0].get_ydata(), grassmann.distance(mean, blade.shapes(eta)[1]), atol=1e-9
     )
     # the integral of the speed is no less than the distance of the ends
-    length = np.sum(lines(speed)[0].get_ydata()) / (blade_plots.SHAPES - 1)
+    length = np.sum(lines(speed)[0].get_ydata()) / (path_plot.SHAPES - 1)
     assert length >= grassmann.distance(stations[0], stations[-1])
 
 
 def test_other_landmarks_have_no_coordinates_in_the_bundled_space():
-    drawn = blade_plots.path(bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101))
+    drawn = path_plot.path(bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101))
     assert any("needs 401 landmarks" in text.get_text() for text in drawn.axes[2].texts)
     assert not drawn.axes[2].lines
 

@@ -14,6 +14,7 @@ from bladegen.cli.check import check
 from bladegen.cli.convert import convert
 from bladegen.cli.family import family
 from bladegen.cli.formats import formats
+from bladegen.cli.groups import grouped
 from bladegen.cli.options import (
     LANDMARKS,
     MAKING,
@@ -26,7 +27,6 @@ from bladegen.cli.options import (
     Making,
     Producing,
     Target,
-    grouped,
     suffixes_of,
 )
 from bladegen.cli.output import CLOSED_PIPE, OutputError, guarded

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from bladegen.cli.groups import grouped
 from bladegen.cli.options import (
     LANDMARKS,
     MAKING,
@@ -16,7 +17,6 @@ from bladegen.cli.options import (
     Making,
     Producing,
     Target,
-    grouped,
     suffixes_of,
 )
 from bladegen.cli.perturb import ChordLine

@@ -1,22 +1,14 @@
-"""What commands have in common: groups of options, and what they make of them.
+"""What commands have in common: options and groups of them (`groups`), and what they make."""
 
-A group is a frozen dataclass whose fields are options; `grouped` gives a command the options of
-every group among its parameters, so that each option stands in one place.
-"""
-
-import inspect
-import shlex
 from collections.abc import Callable
-from contextvars import ContextVar
-from copy import copy
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass
 from enum import StrEnum
-from functools import wraps
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any
 
 import typer
 
+from bladegen.cli.groups import COMMAND
 from bladegen.errors import BladegenError
 
 __all__ = [
@@ -34,7 +26,6 @@ __all__ = [
     "Reynolds",
     "Target",
     "ending_in",
-    "grouped",
     "suffixes_of",
 ]
 
@@ -110,8 +101,6 @@ SideSpacing = Annotated[
 SpanSpacing = Annotated[
     float, typer.Option(help="Cell at that end over the length.", rich_help_panel=GRIDS)
 ]
-
-
 Polars = Annotated[
     str | None,
     typer.Option(
@@ -268,7 +257,7 @@ class Producing:
         return Options(
             tolerance=metres(tolerance, "tolerance"),
             largest=LIGHT_BYTES if self.light else None,
-            command=_COMMAND.get(),
+            command=COMMAND.get(),
             step_schema=self.step,
             stations=self.stations,
             tip=TIPS[self.tip],
@@ -301,73 +290,3 @@ def suffixes_of(formats: list[str] | None) -> tuple[str, ...]:
         return suffixes(formats, registry.FORMATS)
     except BladegenError:  # one is not bladegen's own
         return suffixes(formats, registry.formats(), registry.plugins().remark)
-
-
-def grouped(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of each group among its parameters, in the group's place."""
-    own = inspect.signature(command)
-    groups: dict[str, Any] = {}
-    parameters: list[inspect.Parameter] = []
-    for parameter in own.parameters.values():
-        if not is_dataclass(parameter.annotation):
-            parameters.append(parameter)
-            continue
-        groups[parameter.name] = parameter.annotation
-        parameters += [
-            parameter.replace(
-                name=field.name,
-                annotation=_in_panel(field.type, parameter.annotation),
-                default=field.default,
-            )
-            for field in fields(parameter.annotation)
-        ]
-
-    @wraps(command)
-    def whole(**given: Any) -> None:
-        _COMMAND.set(_typed(command.__name__, parameters, given))
-        made = {
-            name: group(**{field.name: given.pop(field.name) for field in fields(group)})
-            for name, group in groups.items()
-        }
-        command(**given, **made)
-
-    whole.__dict__["__signature__"] = own.replace(parameters=parameters)
-    whole.__annotations__ = {one.name: one.annotation for one in parameters}
-    return whole
-
-
-_COMMAND: ContextVar[str] = ContextVar("what was typed", default="")
-UNTOLD = ("output", "jobs", "dask", "resume")  # options that change no file
-
-
-def _typed(name: str, parameters: list[inspect.Parameter], given: dict[str, Any]) -> str:
-    """Return a command as files tell it: without folders, defaults and what changes no file."""
-    words = ["bladegen", name]
-    for parameter in parameters:
-        value = given[parameter.name]
-        if value == parameter.default or parameter.name in UNTOLD:
-            continue
-        option = get_args(parameter.annotation)[1]
-        values = value if isinstance(value, list) else [value]
-        if isinstance(option, typer.models.ArgumentInfo):
-            words += [Path(str(one)).name for one in values]
-            continue
-        said = next(
-            (
-                flag
-                for flag in (option.default, *(option.param_decls or ()))
-                if isinstance(flag, str) and flag.startswith("--")
-            ),
-            "--" + parameter.name.replace("_", "-"),
-        )
-        for one in values:
-            words += [said] if one is True else [said, Path(str(one)).name]
-    return shlex.join(words)
-
-
-def _in_panel(annotation: Any, group: Any) -> Any:
-    """Return an option that the help shows under its group's heading."""
-    kind, option = get_args(annotation)
-    shown = copy(option)
-    shown.rich_help_panel = option.rich_help_panel or group.__doc__.rstrip(".")
-    return Annotated[kind, shown]

@@ -7,11 +7,10 @@ matrices: no n x n matrix is formed, and a zero angle is not a special case.
 Formulas: Edelman, Arias & Smith, SIAM J. Matrix Anal. Appl. 20 (1998), theorems 2.3-2.4.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 
 from bladegen.errors import GeometryError
+from bladegen.shapes.small_matrices import angle_over_sine, apply, cos, sinc, svd, versine
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array
 
@@ -71,7 +70,7 @@ def exp(X: Array, D: Array) -> Array:
 
 def exp_factors(S2: Array) -> tuple[Array, Array]:
     """Return cos S and sin S / S for S^2 = D^T D, (..., p, p): the factors of X and D in `exp`."""
-    return _apply(_cos, S2), _apply(_sinc, S2)
+    return apply(cos, S2), apply(sinc, S2)
 
 
 def log(X: Array, Y: Array) -> Array:
@@ -116,13 +115,13 @@ def log_factors(overlap: Array) -> tuple[Array, Array]:
     With X^T Y = U c W^T, Q = W U^T and C = U c U^T, log = (Y Q - X C) f(C), so that
     G = W f(c) U^T and H = U c f(c) U^T.
     """
-    U, cosines, Wt = _svd(overlap)
+    U, cosines, Wt = svd(overlap)
     if cosines.size and cosines.min() < RIGHT_ANGLE:
         raise GeometryError(
             "log: a principal angle between the shapes reaches 90 degrees "
             f"(smallest cosine {cosines.min():.1e}); it must stay below"
         )
-    Ut_f = _angle_over_sine(cosines)[..., None] * U.mT
+    Ut_f = angle_over_sine(cosines)[..., None] * U.mT
     return Wt.mT @ Ut_f, (U * cosines[..., None, :]) @ Ut_f
 
 
@@ -140,7 +139,7 @@ def distance(X: Array, Y: Array) -> Array:
         Accurate for small angles too: sines come from the residual, not from cosines.
     """
     X, Y = _alike(X, Y)
-    U, cosines, Wt = _svd(X.mT @ Y)
+    U, cosines, Wt = svd(X.mT @ Y)
     residual = Y @ Wt.mT - (X @ U) * cosines[..., None, :]
     sines = np.linalg.svd(residual, compute_uv=False)[..., ::-1]
     return _root_sum(np.arctan2(sines, cosines) ** 2, axes=-1)
@@ -177,7 +176,7 @@ def transport(V: Array, X: Array, Y: Array) -> Array:
     D = log(X, Y)
     S2 = D.mT @ D
     along = D.mT @ V
-    carried = V - (X @ _apply(_sinc, S2) + D @ _apply(_versine, S2)) @ along
+    carried = V - (X @ apply(sinc, S2) + D @ apply(versine, S2)) @ along
     return carried @ _procrustes(X, Y).mT
 
 
@@ -235,78 +234,11 @@ def _alike(*given: Array) -> list[Array]:
 
 def _procrustes(X: Array, Y: Array) -> Array:
     """Return the orthogonal Q that minimises |Y Q - X|."""
-    U, _, Wt = _svd(X.mT @ Y)
+    U, _, Wt = svd(X.mT @ Y)
     Q: Array = Wt.mT @ U.mT
     return Q
-
-
-def _svd(A: Array) -> tuple[Array, Array, Array]:
-    """Return U, s, V^T of p x p matrices; those of 2 x 2 by formula, ten times as fast.
-
-    A = R(phi) diag(s1, s2) R(theta)^T with plane rotations R; a negative s2 is turned positive
-    by a mirrored U.
-    """
-    if A.shape[-1] != 2:
-        general = np.linalg.svd(A)
-        return general.U, general.S, general.Vh
-    (a, b), (c, d) = np.moveaxis(A, (-2, -1), (0, 1))
-    turn, mirror = 0.5 * np.arctan2(c - b, a + d), 0.5 * np.arctan2(c + b, a - d)
-    half_sum, half_difference = 0.5 * np.hypot(a + d, c - b), 0.5 * np.hypot(a - d, c + b)
-    smaller = half_sum - half_difference
-    phi, theta = mirror + turn, mirror - turn
-    side = np.where(smaller < 0, -1.0, 1.0)
-    U = _columns(np.cos(phi), np.sin(phi), -side * np.sin(phi), side * np.cos(phi))
-    V = _columns(np.cos(theta), np.sin(theta), -np.sin(theta), np.cos(theta))
-    return U, np.stack([half_sum + half_difference, np.abs(smaller)], axis=-1), V.mT
-
-
-def _columns(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Return matrices with the columns (a, b) and (c, d)."""
-    return np.stack([np.stack([a, c], axis=-1), np.stack([b, d], axis=-1)], axis=-2)
 
 
 def _root_sum(squares: Array, axes: int | tuple[int, ...]) -> Array:
     root: Array = np.sqrt(np.sum(squares, axis=axes))
     return root
-
-
-def _apply(f: Callable[[Array], Array], A: Array) -> Array:
-    """Apply `f` to the eigenvalues of the symmetric matrices `A`, shape (..., p, p).
-
-    For 2 x 2 matrices with eigenvalues m - d and m + d, f(A) is the mean of f there plus half
-    their difference times (A - m) / d: no eigenvectors are needed.
-    """
-    if A.shape[-1] == 2:
-        (a, b), (_, d) = np.moveaxis(A, (-2, -1), (0, 1))
-        middle, half = 0.5 * (a + d), 0.5 * (a - d)
-        reach = np.hypot(half, b)
-        low, high = f(np.maximum(middle - reach, 0.0)), f(np.maximum(middle + reach, 0.0))
-        rate = np.divide(high - low, 2.0 * reach, out=np.zeros_like(reach), where=reach > 0)
-        mean = 0.5 * (low + high)
-        return _columns(mean + rate * half, rate * b, rate * b, mean - rate * half)
-    w, V = np.linalg.eigh(A)
-    result: Array = (V * f(np.maximum(w, 0.0))[..., None, :]) @ V.mT
-    return result
-
-
-def _cos(squared: Array) -> Array:
-    cosine: Array = np.cos(np.sqrt(squared))
-    return cosine
-
-
-def _sinc(squared: Array) -> Array:
-    sinc: Array = np.sinc(np.sqrt(squared) / np.pi)
-    return sinc
-
-
-def _versine(squared: Array) -> Array:
-    """(1 - cos s) / s^2 = sinc(s / 2)^2 / 2, which is 1/2 at zero."""
-    return 0.5 * _sinc(squared / 4.0) ** 2
-
-
-def _angle_over_sine(cosine: Array) -> Array:
-    """arccos c / sin arccos c, which is 1 at c = 1; rounding above 1 counts as 1."""
-    c = np.minimum(cosine, 1.0)
-    sine = np.sqrt((1.0 - c) * (1.0 + c))
-    ratio: Array = np.divide(np.arccos(c), sine, out=np.ones_like(c), where=sine > 0)
-    return ratio

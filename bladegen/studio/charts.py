@@ -10,7 +10,7 @@ from math import floor, log10
 
 import numpy as np
 
-from bladegen.studio.model import Scene
+from bladegen.studio.scene import Scene
 from bladegen.support.arrays import Array
 
 __all__ = ["planform", "section", "ticks"]

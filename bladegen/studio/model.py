@@ -17,101 +17,17 @@ from bladegen.blade.deformation import AffineChange, Window
 from bladegen.blade.sanity import KINDS
 from bladegen.families.family import THINNEST
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.studio.scene import Check, Curves, Scene
 from bladegen.studio.state import State
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.files import safe_stem
 from bladegen.variants.batch import FAULTS, Batch, SectionBatch
 
-__all__ = ["Baseline", "Check", "Curves", "Scene", "changes"]
+__all__ = ["Baseline", "changes"]
 
 PERCENTS = np.linspace(0.0, 1.0, 101)  # where a section can be looked at
 BENDING = 40  # spans that follow the blade's bends
-SHOWN_LANDMARKS = 100  # of the surface, about
 DRAWS = 500
-
-
-@dataclass(frozen=True)
-class Check:
-    """One line of the live checks: "good", "odd" or "bad", what was looked at, and the figure."""
-
-    status: str
-    what: str
-    figure: str
-
-
-@dataclass(frozen=True, eq=False)
-class Curves:
-    """What varies over span, each (k,): chord [m], twist [deg], thickness [%], prebend [m]."""
-
-    eta: Array
-    chord: Array
-    twist: Array
-    thickness: Array
-    prebend: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Scene:
-    """What a page shows of a state.
-
-    Parameters
-    ----------
-    state : State
-        Of what.
-    eta : (k,) array
-        Span fractions.
-    sections : (k, n, 3) array
-        The surface [m].
-    deviation : (k, n) array
-        How far it lies off the baseline, along the baseline's outward normal [m].
-    curves : Curves
-        Over span.
-    checks : tuple of Check
-        What was found.
-    """
-
-    state: State
-    eta: Array
-    sections: Array
-    deviation: Array
-    curves: Curves
-    checks: tuple[Check, ...]
-
-    @property
-    def place(self) -> int:
-        """Where in `eta` the section looked at stands."""
-        return int(np.argmin(np.abs(self.eta - self.state.at)))
-
-    @property
-    def valid(self) -> bool:
-        """Whether nothing is wrong with the blade."""
-        return all(check.status != "bad" for check in self.checks)
-
-    @property
-    def profile(self) -> Array:
-        """The section looked at (n, 2), in chords from its leading edge along its chord."""
-        return _flattened(self.sections[self.place], float(self.curves.chord[self.place]))
-
-    @property
-    def placed(self) -> Array:
-        """The section looked at (n, 2) as it stands in the blade, y and x [m]."""
-        placed: Array = self.sections[self.place][:, 1::-1]
-        return placed
-
-    def packet(self) -> bytes:
-        """Return what the 3D view draws: little-endian counts k, n, the place of the section
-        (uint32), the surface and the deviation at every fourth landmark or so (float32).
-        """
-        some = _thinned(self.sections.shape[1])
-        surface, off = self.sections[:, some], self.deviation[:, some]
-        head = np.array([*surface.shape[:2], self.place], dtype="<u4")
-        return head.tobytes() + surface.astype("<f4").tobytes() + off.astype("<f4").tobytes()
-
-
-def _thinned(n: int) -> Any:
-    """Return which landmarks are drawn, the ends and the leading edge among them."""
-    step = max(1, (n - 1) // SHOWN_LANDMARKS)
-    return slice(None, None, step if (n - 1) % (2 * step) == 0 else 1)
 
 
 def changes(state: State) -> dict[str, Any]:
@@ -326,16 +242,3 @@ def _normals(sections: Array) -> Array:
     length = np.linalg.norm(normal, axis=-1, keepdims=True)
     unit: Array = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
     return unit
-
-
-def _flattened(section: Array, chord: float) -> Array:
-    """Return a section in space (n, 3) as (n, 2) in chords: leading edge at 0, upright."""
-    edge = 0.5 * (section[0] + section[-1])
-    nose = section[np.argmax(np.linalg.norm(section - edge, axis=1))]
-    along = (edge - nose) / np.linalg.norm(edge - nose)
-    from_edge = section - edge
-    area = np.cross(from_edge[:-1], from_edge[1:]).sum(axis=0)
-    normal = area - (area @ along) * along
-    up = np.cross(normal / np.linalg.norm(normal), along)
-    flat: Array = (section - nose) @ np.stack([along, up], axis=1) / chord
-    return flat

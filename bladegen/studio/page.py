@@ -7,7 +7,7 @@ and what comes out is shown at once: surface, charts, checks, buttons and the ta
 
 import asyncio
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from secrets import token_urlsafe
 from tempfile import mkdtemp
@@ -17,43 +17,14 @@ import numpy as np
 
 from bladegen.errors import BladegenError, StudioError
 from bladegen.studio import charts, recipes
-from bladegen.studio.library import Library
-from bladegen.studio.model import Scene
+from bladegen.studio.scene import Scene
+from bladegen.studio.shared import Studio
 from bladegen.studio.state import Control, History, State, controls, from_query, to_query
-from bladegen.studio.visits import Visits
-from bladegen.studio.worker import Job, Made, Worker
+from bladegen.studio.worker import Job, Made
 
-__all__ = ["Page", "Shown", "Studio"]
+__all__ = ["Page", "Shown"]
 
 POLL = 0.1  # s, between two looks at what a job is doing
-
-
-@dataclass(eq=False)
-class Studio:
-    """What the tabs of one running studio share.
-
-    Parameters
-    ----------
-    folder : Path
-        Its temporary folder: uploads and files to download.
-    library : Library
-        The blades.
-    first : str
-        The blade that is shown at first.
-    worker : Worker
-        Makes files.
-    packets : dict
-        The latest surface of each tab and its baseline's, by a name that nobody can guess.
-    visits : Visits
-        Page loads that no tab has connected to yet.
-    """
-
-    folder: Path
-    library: Library
-    first: str
-    worker: Worker = field(default_factory=Worker)
-    packets: dict[str, tuple[bytes, bytes]] = field(default_factory=dict)
-    visits: Visits = field(default_factory=Visits)
 
 
 @dataclass(frozen=True, eq=False)

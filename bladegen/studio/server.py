@@ -18,7 +18,8 @@ from typing import Any, Literal
 from bladegen.errors import StudioError
 from bladegen.studio.guard import Guard, is_loopback
 from bladegen.studio.library import UPLOAD_BYTES, Library
-from bladegen.studio.page import Page, Studio
+from bladegen.studio.page import Page
+from bladegen.studio.shared import Studio
 
 __all__ = ["PORT", "Serving", "bound", "serve"]
 

@@ -12,20 +12,17 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.measures.spanwise import LINES, sides, spanwise
-from bladegen.shapes import affine, grassmann
-from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.shapes import affine
 from bladegen.support.arrays import Array
 from bladegen.views import combs
-from bladegen.views.plots import dress, figure, figure_of, shade, titled
-from bladegen.views.style import BASELINE, CATEGORIES, INK, VARIANT
+from bladegen.views.path_plot import path
+from bladegen.views.plots import dress, figure, figure_of, pair, shade, titled
+from bladegen.views.style import BASELINE, INK, VARIANT
 
 __all__ = ["PLOTS", "Plot", "overview"]
 
 SPANS = 401  # points of a curve over the span
-SHAPES = 201  # of the path on the Grassmannian
-LANDMARKS = 401  # that the bundled space was learned with
 CURVED = (0.15, 0.3, 0.5, 0.7, 0.9)  # span fractions of the curvature's sections
-SAME_SHAPE = 1e-9  # rad
 CURVATURE_SHOWN = 90  # per cent of the landmarks; noses are far rounder than the rest
 EDGE = 0.01  # of the contour at either end that curvature leaves out: trailing edges are corners
 Drawn = Callable[[Blade, Blade | None], Any]
@@ -70,7 +67,7 @@ def sections(blade: Blade, baseline: Blade | None = None) -> Any:
     """Draw the stations' sections in metres, in chords, and standardised."""
     drawn, ((metres, chords, standard),) = figure(1, 3, width=14, height=4.8)
     eta = np.unique(blade.eta)
-    for one, line in _pair(blade, baseline):
+    for one, line in pair(blade, baseline):
         profiles = one.profiles(eta)
         X, M, _ = affine.standardise(profiles)
         X, _ = affine.cluster(X, M)
@@ -96,47 +93,6 @@ def sections(blade: Blade, baseline: Blade | None = None) -> Any:
         frameon=False,
     )
     return titled(drawn, blade, "sections at the stations", baseline)
-
-
-def path(blade: Blade, baseline: Blade | None = None) -> Any:
-    """Draw the path on the Grassmannian: distances over the span, and normal coordinates."""
-    drawn, ((away, speed), (coordinates, plane)) = figure(2, 2, width=11, height=7.6)
-    eta = np.linspace(0.0, 1.0, SHAPES)
-    space = ShapeSpace.bundled()
-    known = len(blade.u) == LANDMARKS and bool(np.allclose(blade.u, space.u))
-    for one, line in _pair(blade, baseline):
-        X = _shapes(one, eta)
-        stations = _shapes(one, one.eta)
-        own = grassmann.karcher_mean(_distinct(stations))
-        colour = VARIANT if one is blade else BASELINE
-        away.plot(eta, grassmann.distance(own[None], X), line, color=colour, label=one.name)
-        away.plot(one.eta, grassmann.distance(own[None], stations), "o", color=colour, ms=4)
-        rate = grassmann.distance(X[:-1], X[1:]) / np.diff(eta)
-        speed.plot(0.5 * (eta[1:] + eta[:-1]), rate, line, color=colour)
-        if known:
-            t, marks = space.encode(X), space.encode(stations)
-            for k in range(space.dimension):
-                label = f"t{k + 1}" if one is blade else None
-                shown = CATEGORIES[k % len(CATEGORIES)]
-                coordinates.plot(eta, t[:, k], line, color=shown, label=label)
-            plane.plot(t[:, 0], t[:, 1], line, color=colour)
-            plane.plot(marks[:, 0], marks[:, 1], "o", color=colour, ms=4)
-    away.set(title="from the stations' Karcher mean", xlabel="eta", ylabel="distance, rad")
-    speed.set(title="speed of the path", xlabel="eta", ylabel="distance over eta, rad")
-    coordinates.set(title="in the bundled space", xlabel="eta", ylabel="normal coordinates, rad")
-    plane.set(title="the path in its first two coordinates", xlabel="t1, rad", ylabel="t2, rad")
-    if known:
-        some = space.coordinates[:: max(1, len(space.coordinates) // 2000)]
-        plane.plot(*some[:, :2].T, ".", color="0.85", ms=2, zorder=0, label="the space's airfoils")
-        plane.legend(fontsize=8, markerscale=4, frameon=False)
-        coordinates.legend(fontsize=8, ncols=2, frameon=False)
-    else:
-        for axis in (coordinates, plane):
-            note = f"needs {LANDMARKS} landmarks, the space's"
-            axis.text(0.5, 0.5, note, ha="center", transform=axis.transAxes, color=INK)
-    if baseline is not None:
-        away.legend(fontsize=8, frameon=False)
-    return titled(drawn, blade, "path on the Grassmannian")
 
 
 def curvature(blade: Blade, baseline: Blade | None = None) -> Any:
@@ -173,7 +129,7 @@ def thickness(blade: Blade, baseline: Blade | None = None) -> Any:
     """Draw thickness in metres and over chord, and the thickness and camber lines of sections."""
     drawn, axes = figure(2, 2, width=11, height=7.6)
     eta = np.linspace(0.0, 1.0, SPANS)
-    table = {id(one): spanwise(one, eta) for one, _ in _pair(blade, baseline)}
+    table = {id(one): spanwise(one, eta) for one, _ in pair(blade, baseline)}
     ratio, metres = "thickness over chord, %", "thickness, m"
     _over_span(
         axes[0, 0],
@@ -191,7 +147,7 @@ def thickness(blade: Blade, baseline: Blade | None = None) -> Any:
         blade,
         baseline,
     )
-    for one, line in _pair(blade, baseline):
+    for one, line in pair(blade, baseline):
         upper, lower = sides(one.profiles(np.array(CURVED)), LINES)
         for k, at in enumerate(CURVED):
             style = {"color": shade(k / (len(CURVED) - 1)), "linestyle": line}
@@ -230,11 +186,6 @@ PLOTS = {
 }
 
 
-def _pair(blade: Blade, baseline: Blade | None) -> list[tuple[Blade, str]]:
-    """Return what is drawn with its line: a baseline dashed, under the blade."""
-    return [*([] if baseline is None else [(baseline, "--")]), (blade, "-")]
-
-
 def _over_span(
     axis: Any,
     label: str,
@@ -244,7 +195,7 @@ def _over_span(
     baseline: Blade | None,
 ) -> None:
     """Draw a quantity over the span, the stations marked below."""
-    for one, line in _pair(blade, baseline):
+    for one, line in pair(blade, baseline):
         colour = VARIANT if one is blade else BASELINE
         axis.plot(eta, values(one), line, color=colour, label=one.name)
     axis.plot(
@@ -264,7 +215,7 @@ def _over_span(
 def _outline(axis: Any, blade: Blade, baseline: Blade | None) -> None:
     """Draw the blade as seen from the suction side, its stations across it."""
     eta = np.linspace(0.0, 1.0, SPANS)
-    for one, line in _pair(blade, baseline):
+    for one, line in pair(blade, baseline):
         placed = one.sections(eta)
         z, y = placed[..., 2], placed[..., 1]
         row = np.arange(len(eta))
@@ -282,17 +233,6 @@ def _outline(axis: Any, blade: Blade, baseline: Blade | None) -> None:
     axis.invert_yaxis()
     axis.set_aspect("equal", adjustable="datalim")
     axis.set(xlabel="z, m", ylabel="y, m", title="suction side, stations marked")
-
-
-def _shapes(blade: Blade, eta: Array) -> Array:
-    """Return the blade's shapes (k, n, 2) on the Grassmannian, deformations included."""
-    return blade.shapes(eta)[1]
-
-
-def _distinct(points: Array) -> Array:
-    """Return points of which no neighbours are the same: repeated stations count once."""
-    fresh = grassmann.distance(points[:-1], points[1:]) > SAME_SHAPE
-    return np.concatenate([points[:1], points[1:][fresh]])
 
 
 def _section_curvature(blade: Blade, profiles: Array) -> Array:

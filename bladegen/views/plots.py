@@ -20,6 +20,7 @@ __all__ = [
     "dress",
     "figure",
     "figure_of",
+    "pair",
     "physical",
     "save_figure",
     "save_pages",
@@ -135,3 +136,8 @@ def physical(points: Array, like: Array) -> Array:
     X, M, b = affine.standardise(like)
     U, _, Vt = np.linalg.svd(points.mT @ X)
     return affine.restore(points @ (U @ Vt), M, b)
+
+
+def pair(blade: Blade, baseline: Blade | None) -> list[tuple[Blade, str]]:
+    """Return what is drawn with its line: a baseline dashed, under the blade."""
+    return [*([] if baseline is None else [(baseline, "--")]), (blade, "-")]

@@ -1,0 +1,76 @@
+"""Functions and singular values of small matrices: by formula for 2 x 2, many at once."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from bladegen.support.arrays import Array
+
+__all__ = ["angle_over_sine", "apply", "cos", "sinc", "svd", "versine"]
+
+
+def svd(A: Array) -> tuple[Array, Array, Array]:
+    """Return U, s, V^T of p x p matrices; those of 2 x 2 by formula, ten times as fast.
+
+    A = R(phi) diag(s1, s2) R(theta)^T with plane rotations R; a negative s2 is turned positive
+    by a mirrored U.
+    """
+    if A.shape[-1] != 2:
+        general = np.linalg.svd(A)
+        return general.U, general.S, general.Vh
+    (a, b), (c, d) = np.moveaxis(A, (-2, -1), (0, 1))
+    turn, mirror = 0.5 * np.arctan2(c - b, a + d), 0.5 * np.arctan2(c + b, a - d)
+    half_sum, half_difference = 0.5 * np.hypot(a + d, c - b), 0.5 * np.hypot(a - d, c + b)
+    smaller = half_sum - half_difference
+    phi, theta = mirror + turn, mirror - turn
+    side = np.where(smaller < 0, -1.0, 1.0)
+    U = _columns(np.cos(phi), np.sin(phi), -side * np.sin(phi), side * np.cos(phi))
+    V = _columns(np.cos(theta), np.sin(theta), -np.sin(theta), np.cos(theta))
+    return U, np.stack([half_sum + half_difference, np.abs(smaller)], axis=-1), V.mT
+
+
+def _columns(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Return matrices with the columns (a, b) and (c, d)."""
+    return np.stack([np.stack([a, c], axis=-1), np.stack([b, d], axis=-1)], axis=-2)
+
+
+def apply(f: Callable[[Array], Array], A: Array) -> Array:
+    """Apply `f` to the eigenvalues of the symmetric matrices `A`, shape (..., p, p).
+
+    For 2 x 2 matrices with eigenvalues m - d and m + d, f(A) is the mean of f there plus half
+    their difference times (A - m) / d: no eigenvectors are needed.
+    """
+    if A.shape[-1] == 2:
+        (a, b), (_, d) = np.moveaxis(A, (-2, -1), (0, 1))
+        middle, half = 0.5 * (a + d), 0.5 * (a - d)
+        reach = np.hypot(half, b)
+        low, high = f(np.maximum(middle - reach, 0.0)), f(np.maximum(middle + reach, 0.0))
+        rate = np.divide(high - low, 2.0 * reach, out=np.zeros_like(reach), where=reach > 0)
+        mean = 0.5 * (low + high)
+        return _columns(mean + rate * half, rate * b, rate * b, mean - rate * half)
+    w, V = np.linalg.eigh(A)
+    result: Array = (V * f(np.maximum(w, 0.0))[..., None, :]) @ V.mT
+    return result
+
+
+def cos(squared: Array) -> Array:
+    cosine: Array = np.cos(np.sqrt(squared))
+    return cosine
+
+
+def sinc(squared: Array) -> Array:
+    sinc: Array = np.sinc(np.sqrt(squared) / np.pi)
+    return sinc
+
+
+def versine(squared: Array) -> Array:
+    """(1 - cos s) / s^2 = sinc(s / 2)^2 / 2, which is 1/2 at zero."""
+    return 0.5 * sinc(squared / 4.0) ** 2
+
+
+def angle_over_sine(cosine: Array) -> Array:
+    """arccos c / sin arccos c, which is 1 at c = 1; rounding above 1 counts as 1."""
+    c = np.minimum(cosine, 1.0)
+    sine = np.sqrt((1.0 - c) * (1.0 + c))
+    ratio: Array = np.divide(np.arccos(c), sine, out=np.ones_like(c), where=sine > 0)
+    return ratio

@@ -1,0 +1,38 @@
+"""What the tabs of one running studio share."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from bladegen.studio.library import Library
+from bladegen.studio.visits import Visits
+from bladegen.studio.worker import Worker
+
+__all__ = ["Studio"]
+
+
+@dataclass(eq=False)
+class Studio:
+    """What the tabs of one running studio share.
+
+    Parameters
+    ----------
+    folder : Path
+        Its temporary folder: uploads and files to download.
+    library : Library
+        The blades.
+    first : str
+        The blade that is shown at first.
+    worker : Worker
+        Makes files.
+    packets : dict
+        The latest surface of each tab and its baseline's, by a name that nobody can guess.
+    visits : Visits
+        Page loads that no tab has connected to yet.
+    """
+
+    folder: Path
+    library: Library
+    first: str
+    worker: Worker = field(default_factory=Worker)
+    packets: dict[str, tuple[bytes, bytes]] = field(default_factory=dict)
+    visits: Visits = field(default_factory=Visits)

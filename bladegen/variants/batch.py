@@ -251,7 +251,14 @@ class SectionBatch:
 
         own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
         standing = self._standing(target) if sections.size else target[..., None]
-        given = [self.blade.u, self.features, self._features.slopes, raw, target, standing]
+        given: list[Array | Indices] = [
+            self.blade.u,
+            self.features,
+            self._features.slopes,
+            raw,
+            target,
+            standing,
+        ]
         flat = self._plain_ruling[:, None] / target
         given += [own, known, chord, to_space, sections, measures, edge, flat, looks]
         # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise

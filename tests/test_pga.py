@@ -166,7 +166,7 @@ def test_wrong_coordinates_are_refused():
 
 
 def test_a_mean_that_does_not_converge_is_said(monkeypatch):
-    monkeypatch.setattr("bladegen.shapes.shape_space.STEPS", 1)
+    monkeypatch.setattr("bladegen.shapes.learning.STEPS", 1)
     with pytest.raises(GeometryError, match="not converged after 1 steps"):
         ShapeSpace.fit(cloud(1), modes=2)
 

@@ -15,57 +15,26 @@ import numpy as np
 
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.blade import Blade
-from bladegen.blade.deformation import RANGES, AffineChange, Window
+from bladegen.blade.deformation import RANGES, Window
 from bladegen.errors import FamilyError
+from bladegen.families.block import Block
+from bladegen.families.rules import Rules
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import instance, one_of, whole
-from bladegen.support.arrays import Array, Indices, Mask
+from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import safe_stem
-from bladegen.variants.batch import FAULTS, Batch, SectionBatch
+from bladegen.variants.batch import SectionBatch
 from bladegen.variants.designs import Design
 from bladegen.variants.draws import Seed
 from bladegen.variants.factors import factors
 
-__all__ = ["BLOCK", "POLICIES", "Block", "Family", "family"]
+__all__ = ["BLOCK", "POLICIES", "Family", "family"]
 
 BLOCK = 64  # variants made at once; what a run may lose
 TRIES = 1000  # draws of one variant before it is kept and marked
 THINNEST = 0.05  # of the chord; a thinner section is no blade's
 SPANS = 100
 POLICIES = ("redraw", "keep")
-
-
-@dataclass(frozen=True, eq=False)
-class Block:
-    """Neighbouring variants of a family.
-
-    Parameters
-    ----------
-    index : (b,) array of int
-        Their places in the family.
-    values : (b, d) array
-        Values of the factors [rad].
-    attempts : (b,) array of int
-        How many draws each took.
-    reasons : tuple of str
-        What is wrong with each; "" if nothing is.
-    refused : tuple of str
-        What was wrong with the first draw of each; "" if nothing was.
-    batch : Batch
-        Their sections.
-    """
-
-    index: Indices
-    values: Array
-    attempts: Indices
-    reasons: tuple[str, ...]
-    refused: tuple[str, ...]
-    batch: Batch
-
-    @property
-    def valid(self) -> Mask:
-        """Which variants are sound, (b,)."""
-        return np.array([not reason for reason in self.reasons])
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +112,11 @@ class Family:
     def _sections(self) -> SectionBatch:
         return SectionBatch(self.blade, self.space, self.window, self.eta, self.chord_line)
 
+    @cached_property
+    def _rules(self) -> Rules:
+        what, extrapolation = self.design.what, self.allow_extrapolation
+        return Rules(self._sections, what, self.thinnest, extrapolation, self.allow_odd)
+
     def block(self, index: Indices, *, dtype: type = np.float64, measured: bool = False) -> Block:
         """Make the sections of some variants, drawn again where they are not sound.
 
@@ -157,17 +131,17 @@ class Family:
         """
         made: dict[str, Any] = {"dtype": dtype, "measured": measured}
         values = self.design.at(index)
-        if np.count_nonzero(self._left(values)) > len(index) // 2 and self._redraws:
-            refused = self._tested(values)  # sections of so many would be made in vain
+        if np.count_nonzero(self._rules.left(values)) > len(index) // 2 and self._redraws:
+            refused = self._rules.tested(values)  # sections of so many would be made in vain
             values, attempts, reasons = self._redrawn(index, values, refused)
-            batch = self._sections.evaluate(*self._split(values), **made)
+            batch = self._sections.evaluate(*self._rules.split(values), **made)
             return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
-        batch = self._sections.evaluate(*self._split(values), **made)
-        refused = self._reasons(values, batch.faults, batch.relative_thickness, batch.looks)
+        batch = self._sections.evaluate(*self._rules.split(values), **made)
+        refused = self._rules.reasons(values, batch.faults, batch.relative_thickness, batch.looks)
         values, attempts, reasons = self._redrawn(index, values, refused)
         again = np.flatnonzero(attempts > 1)
         if again.size:
-            batch.take(again, self._sections.evaluate(*self._split(values[again]), **made))
+            batch.take(again, self._sections.evaluate(*self._rules.split(values[again]), **made))
         return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
 
     @property
@@ -192,7 +166,7 @@ class Family:
         return f"{safe_stem(self.blade.name)}-{place:0{digits}d}"
 
     def _blade(self, place: int, values: Array) -> Blade:
-        t, change = self._split(values[None])
+        t, change = self._rules.split(values[None])
         single = {name: float(np.ravel(getattr(change, name))[0]) for name in RANGES}
         return self.blade.untested(
             self.space,
@@ -204,13 +178,10 @@ class Family:
             name=self.name(place),
         )
 
-    def _split(self, values: Array) -> tuple[Array, AffineChange]:
-        return self.design.what.split(values, self._sections.modes)
-
     def _drawn(self, index: Indices) -> Array:
         """Return the values (b, d) of variants, after all redrawing."""
         values = self.design.at(index)
-        return self._redrawn(index, values, self._tested(values))[0]
+        return self._redrawn(index, values, self._rules.tested(values))[0]
 
     def _redrawn(
         self, index: Indices, values: Array, reasons: list[str]
@@ -226,58 +197,10 @@ class Family:
                 break
             values[again] = self.design.redrawn(index[again], attempt)
             attempts[again] += 1
-            for row, reason in zip(again, self._tested(values[again]), strict=True):
+            for row, reason in zip(again, self._rules.tested(values[again]), strict=True):
                 reasons[row] = reason
             again = again[[bool(reasons[row]) for row in again]]
         return values, attempts, reasons
-
-    def _tested(self, values: Array) -> list[str]:
-        """Say what is wrong with variants (b, d), without making their sections."""
-        reasons = self._strayed(values)
-        near = np.flatnonzero([not reason for reason in reasons])
-        if near.size:
-            tested = self._sections.tested(*self._split(values[near]))
-            for row, reason in zip(near, self._reasons(values[near], *tested), strict=True):
-                reasons[row] = reason
-        return reasons
-
-    def _left(self, values: Array) -> Mask:
-        """Tell which variants (b, d) have a section that leaves the space's data, (b,)."""
-        domain, t = self._sections.domain, self._split(values)[0]
-        if domain is None or self.allow_extrapolation:
-            return np.zeros(len(values), dtype=bool)
-        left: Mask = np.any(domain.left(self._sections.step(t)), axis=1)
-        return left
-
-    def _strayed(self, values: Array) -> list[str]:
-        """Say which variants (b, d) leave their bounds or the space's data; "" if none does."""
-        reasons = self.design.what.outside(values)
-        domain, t = self._sections.domain, self._split(values)[0]
-        if domain is not None:
-            for row in np.flatnonzero(self._left(values)):
-                reasons[row] = reasons[row] or domain.said(self._sections.step(t[row : row + 1])[0])
-        return reasons
-
-    def _reasons(self, values: Array, faults: Indices, thickness: Array, looks: Array) -> list[str]:
-        """Say what is wrong with variants (b, d), first thing first; "" if nothing is."""
-        reasons = self._strayed(values)
-        for row in np.flatnonzero(faults.any(axis=1)):
-            k = int(np.argmax(faults[row] > 0))
-            reasons[row] = reasons[row] or f"{FAULTS[faults[row, k]]} at eta = {self.eta[k]:.4f}"
-        for row in np.flatnonzero(thickness.min(axis=1) < self.thinnest):
-            k = int(np.argmin(thickness[row]))
-            reasons[row] = reasons[row] or (
-                f"relative thickness {thickness[row, k]:.4f} at eta = {self.eta[k]:.4f} is below "
-                f"{self.thinnest:g}"
-            )
-        if self.allow_odd:
-            return reasons
-        odd = self._sections.oddities(looks)
-        for place in np.flatnonzero(odd.kinds.any(axis=1)).tolist():
-            k = int(np.argmax(odd.kinds[place] > 0))
-            said = f"{odd.said((place, k))} at eta = {self.eta[k]:.4f}"
-            reasons[place] = reasons[place] or said
-        return reasons
 
 
 def family(

@@ -24,7 +24,8 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import ExportError, FamilyError
-from bladegen.families.family import BLOCK, Block
+from bladegen.families.block import Block
+from bladegen.families.family import BLOCK
 from bladegen.families.forecasts import NoRoomError
 from bladegen.families.identity import differences
 from bladegen.support.files import alone, folder, replacing

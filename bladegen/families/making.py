@@ -11,7 +11,7 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import PerturbationError, PromiseError
 from bladegen.exports import exporters
 from bladegen.exports.products import Products
-from bladegen.families.family import Block
+from bladegen.families.block import Block
 from bladegen.families.folder import FLOAT_TYPES
 from bladegen.families.manifest_rows import drawn_again, rows_of
 from bladegen.families.order import Order

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from bladegen.airfoils import polygons
-from bladegen.families.family import Block, Family
+from bladegen.families.block import Block
+from bladegen.families.family import Family
 from bladegen.families.folder import sections_digest
 from bladegen.measures.spanwise import UNITS
 from bladegen.variants.draws import WIDEST

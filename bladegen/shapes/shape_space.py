@@ -6,18 +6,17 @@ the principal modes; a shape of the learned manifold is exp(mean, sum_k t_k mode
 Fletcher, Lu & Joshi 2003).  Coordinates are radians: |t| is the distance from the mean.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from bladegen.airfoils.landmarks import landmark_parameters
-from bladegen.airfoils.splines import SectionSplines
-from bladegen.errors import GeometryError, SpaceError
+from bladegen.errors import SpaceError
 from bladegen.shapes import grassmann
-from bladegen.shapes.saved_spaces import NO_SPREAD, ORTHONORMAL, problem_of
+from bladegen.shapes.learning import chunks, parameters, principal
+from bladegen.shapes.other_landmarks import evaluated
+from bladegen.shapes.saved_spaces import ORTHONORMAL, problem_of
 from bladegen.support.archive import load_arrays, save_arrays
 from bladegen.support.arguments import instance, numbers, path_of, whole
 from bladegen.support.arrays import Array, readonly
@@ -26,12 +25,7 @@ from bladegen.support.files import require_suffix
 __all__ = ["ShapeSpace"]
 
 ARRAYS = ("u", "mean", "modes", "variances", "coordinates")
-CHUNK = 1000  # shapes handled at once: bounds memory to some tens of megabytes
-TOLERANCE = 1e-10  # mean tangent at the Karcher mean [rad]
-STEPS = 100
 SAME_LANDMARKS = 1e-12
-HALVED = 16  # times the error of a cubic spline through half of the landmarks is that of all
-COARSE = 1e-3  # of a shape's root mean square size; splines must be right to this share
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,30 +100,16 @@ class ShapeSpace:
         largest = min(count - 1, 2 * n - 4)
         if not 1 <= modes <= largest:
             raise SpaceError(f"modes: got {modes}, allowed is 1 to {largest} for {count} shapes")
-        mean = _karcher_mean(points)
-        # The covariance acts on tangent vectors as 2n numbers: its Gram matrix is summed up
-        # over chunks of shapes, and no n x n projector is formed.
-        gram = np.zeros((2 * n, 2 * n))
-        for part in _chunks(count):
-            logs = grassmann.log(mean[None], points[part]).reshape(-1, 2 * n)
-            gram += logs.T @ logs
-        from scipy.linalg import eigh
-
-        variances = np.maximum(np.linalg.eigvalsh(gram / count)[::-1], 0.0)
-        if not variances[modes - 1] >= NO_SPREAD**2:
-            spread = int(np.count_nonzero(variances >= NO_SPREAD**2))
-            raise SpaceError(f"modes: got {modes}, the shapes vary in {spread} directions only")
-        _, vectors = eigh(gram, subset_by_index=[2 * n - modes, 2 * n - 1])
-        kept = _horizontal(mean, vectors[:, ::-1].T.reshape(modes, n, 2))
+        mean, kept, variances = principal(points, modes)
         space = cls(
-            u=_parameters(n) if u is None else u,
+            u=parameters(n) if u is None else u,
             mean=mean,
             modes=kept,
             variances=variances[:largest],
             coordinates=np.zeros((0, modes)),
             about=about,
         )
-        coordinates = np.concatenate([space.encode(points[part]) for part in _chunks(count)])
+        coordinates = np.concatenate([space.encode(points[part]) for part in chunks(count)])
         return cls(space.u, mean, kept, space.variances, coordinates, about)
 
     @classmethod
@@ -187,31 +167,8 @@ class ShapeSpace:
         """
         if len(u) == len(self.u) and np.allclose(u, self.u, rtol=0, atol=SAME_LANDMARKS):
             return self
-        self._require_fine()
-        matrix = SectionSplines(self.u).values(np.asarray(u))
-        mean = matrix @ self.mean
-        mean -= mean.mean(axis=0)
-        squares, axes = np.linalg.eigh(mean.T @ mean)
-        if len(u) < self.dimension + 3 or squares[0] < ORTHONORMAL * squares[1]:
-            raise SpaceError(f"{len(u)} landmarks are too few for {self.dimension} modes")
-        scale = (axes / np.sqrt(squares)) @ axes.T
-        modes = matrix @ self.modes @ scale
-        modes -= modes.mean(axis=-2, keepdims=True)
-        mean = mean @ scale
-        return replace(self, u=u, mean=mean, modes=modes - mean @ (mean.T @ modes))
-
-    def _require_fine(self) -> None:
-        """Raise if the space's landmarks are too few to say what lies between them."""
-        columns = np.concatenate([self.mean[None], self.modes])
-        halves = SectionSplines(self.u[::2]).values(self.u) if len(self.u) >= 9 else None
-        missed = np.inf if halves is None else np.abs(halves @ columns[:, ::2] - columns).max()
-        error = float(missed) * np.sqrt(len(self.u)) / HALVED
-        if not error <= COARSE:
-            raise SpaceError(
-                f"space: its {len(self.u)} landmarks are too coarse to be evaluated at others "
-                f"(an error of {error:.1g}, allowed is {COARSE:g} of a shape's size); build the "
-                f"blade with landmarks={len(self.u)} (--landmarks {len(self.u)})"
-            )
+        mean, modes = evaluated(self.u, self.mean, self.modes, np.asarray(u))
+        return replace(self, u=u, mean=mean, modes=modes)
 
     @cached_property
     def _gram(self) -> Array | None:
@@ -340,49 +297,3 @@ def _shapes(points: Array, field: str, n: int | None = None) -> Array:
         wanted = f"(..., {'n' if n is None else n}, 2)"
         raise SpaceError(f"{field}: got the shape {values.shape}, must be {wanted}")
     return values
-
-
-def _chunks(count: int) -> Iterator[slice]:
-    return (slice(first, first + CHUNK) for first in range(0, count, CHUNK))
-
-
-def _karcher_mean(points: Array) -> Array:
-    """Return the Karcher mean of many points, by gradient steps.
-
-    The sum of the logarithms Y G - X H is (sum of Y G) - X (sum of H) with 2 x 2 matrices G and
-    H, so a step is two products with the matrix of all landmarks and never forms a logarithm.
-    """
-    count, n, _ = points.shape
-    landmarks = np.ascontiguousarray(np.moveaxis(points, 0, 1)).reshape(n, 2 * count)
-    mean, length = points[0], np.inf
-    for _ in range(STEPS):
-        overlaps = np.moveaxis((mean.T @ landmarks).reshape(2, count, 2), 0, 1)
-        G, H = grassmann.log_factors(overlaps)
-        tangent = (landmarks @ G.reshape(2 * count, 2) - mean @ H.sum(axis=0)) / count
-        length = float(grassmann.norm(tangent))
-        if length <= TOLERANCE:
-            return grassmann.align(points[0], mean)
-        mean = np.linalg.qr(grassmann.exp(mean, tangent)).Q
-    raise GeometryError(
-        f"Karcher mean of {count} shapes: not converged after {STEPS} steps: the mean tangent is "
-        f"{length:.1e} rad, allowed is {TOLERANCE:.1e}"
-    )
-
-
-def _parameters(n: int) -> Array:
-    """Return landmark parameters of n points that may be no airfoil's."""
-    return landmark_parameters(n) if n % 2 and n >= 5 else np.linspace(0.0, 1.0, n)
-
-
-def _horizontal(mean: Array, modes: Array) -> Array:
-    """Make modes horizontal at the mean and orthonormal, to rounding; fix their signs.
-
-    A mode's sign is free; its largest entry is made positive, so that fits can be compared.
-    """
-    horizontal = modes - mean @ (mean.T @ modes)
-    flat = horizontal.reshape(len(modes), -1)
-    Q, R = np.linalg.qr(flat.T)
-    flat = (Q * np.sign(np.diag(R))).T
-    largest = flat[np.arange(len(flat)), np.argmax(np.abs(flat), axis=1)]
-    signed: Array = (flat * np.sign(largest)[:, None]).reshape(modes.shape)
-    return signed

@@ -1,0 +1,43 @@
+"""Neighbouring variants of a family, made at once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladegen.support.arrays import Array, Indices, Mask
+from bladegen.variants.batch import Batch
+
+__all__ = ["Block"]
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Neighbouring variants of a family.
+
+    Parameters
+    ----------
+    index : (b,) array of int
+        Their places in the family.
+    values : (b, d) array
+        Values of the factors [rad].
+    attempts : (b,) array of int
+        How many draws each took.
+    reasons : tuple of str
+        What is wrong with each; "" if nothing is.
+    refused : tuple of str
+        What was wrong with the first draw of each; "" if nothing was.
+    batch : Batch
+        Their sections.
+    """
+
+    index: Indices
+    values: Array
+    attempts: Indices
+    reasons: tuple[str, ...]
+    refused: tuple[str, ...]
+    batch: Batch
+
+    @property
+    def valid(self) -> Mask:
+        """Which variants are sound, (b,)."""
+        return np.array([not reason for reason in self.reasons])

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 import bladegen
-from bladegen.cli import commands
+from bladegen.cli import build, commands
 from bladegen.errors import BladegenError
 
 RUN = CliRunner()
@@ -274,7 +274,7 @@ def test_light_solids_are_small_and_say_their_schema(tmp_path):
 
 def test_hub_radius_and_precone_reach_the_rotor(monkeypatch, tmp_path):
     seen = []
-    monkeypatch.setattr(commands, "_build", lambda *arguments: seen.append(arguments[-1]))
+    monkeypatch.setattr(build, "_build", lambda *arguments: seen.append(arguments[-1]))
     words = ("build", "nrel5mw", "-o", tmp_path, "--landmarks", 101)
     done = run(*words, "--rotor", "--hub-radius", "2.5m", "--precone", "4")
     assert done.exit_code == 0
@@ -284,3 +284,9 @@ def test_hub_radius_and_precone_reach_the_rotor(monkeypatch, tmp_path):
     assert isinstance(done.exception, BladegenError)
     assert "add --rotor" in str(done.exception)
     assert len(seen) == 1
+
+
+@pytest.mark.parametrize("name", commands.SUMMARIES)
+def test_the_list_of_commands_says_what_their_own_help_says(name):
+    help_of_it = " ".join(commands.command_of(name).help.split())
+    assert help_of_it.startswith(commands.SUMMARIES[name])

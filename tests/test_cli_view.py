@@ -5,7 +5,7 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cli import commands
-from bladegen.cli.perturb import Changes
+from bladegen.cli.changes import Changes
 from bladegen.cli.view import What
 from bladegen.errors import BladegenError
 from bladegen.views import keys, preview, sweep

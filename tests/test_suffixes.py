@@ -58,16 +58,18 @@ def test_a_folder_may_be_named_as_one_likes(tmp_path):
     assert "odd" in str(RUN.invoke(cli.app, command).exception)  # it came so far
 
 
-def commands(app):
-    for info in app.registered_commands:
-        yield info.callback
-    for group in app.registered_groups:
-        yield from commands(group.typer_instance)
+def functions():
+    for name in cli.SUMMARIES:
+        found = cli.function_of(name)
+        if isinstance(found, typer.Typer):
+            yield from (info.callback for info in found.registered_commands)
+        else:
+            yield found
 
 
 def test_no_option_that_names_an_output_is_left_unchecked():
     unchecked, checked = set(), 0
-    for command in commands(cli.app):
+    for command in functions():
         for name, parameter in inspect.signature(command, eval_str=True).parameters.items():
             kind, option = typing.get_args(parameter.annotation)[:2]
             if Path not in (kind, *typing.get_args(kind)) or name in READ:

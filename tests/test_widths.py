@@ -10,9 +10,10 @@ import bladegen as bg
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.airfoils.splines import SectionSplines
 from bladegen.blade.edge_widths import Wedges
+from bladegen.errors import GeometryError
 from bladegen.measures.smoothness import edge_bulges, edge_widths
 from bladegen.shapes import grassmann
-from strategies import airfoils, definitions, few
+from strategies import airfoils, definitions, few, naca
 
 U = landmark_parameters(401)
 SPLINES = SectionSplines(U)
@@ -88,3 +89,12 @@ def test_edges_that_bulge_between_stations_are_found():
     ends = edge_widths(made, made.eta[k : k + 2])
     width = edge_widths(made, np.array([eta]))
     assert_allclose(max(ends.min() - width, width - ends.max()), excess)
+
+
+def test_a_side_that_ends_ahead_of_mid_chord_is_refused():
+    points = landmarks(naca(0.12, 0.0, 0.01), 101)
+    points = np.array(points)
+    points[0] = [0.3, points[0, 1]]
+    curves = SectionSplines(landmark_parameters(101)).fit(points[None])
+    with pytest.raises(GeometryError, match=r"ends at 0\.\d+ of its chord, must be behind 0\.5"):
+        Wedges.to(curves, np.array([0.01]))

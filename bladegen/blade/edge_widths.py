@@ -19,6 +19,7 @@ import numpy as np
 from bladegen.airfoils.curves import SectionCurves
 from bladegen.airfoils.splines import SectionSplines
 from bladegen.definition.blade_definition import Interpolant
+from bladegen.errors import GeometryError
 from bladegen.shapes import affine
 from bladegen.support.arrays import Array
 
@@ -113,6 +114,11 @@ class Wedges:
         along = curves.trailing_edge - nose
         along = along / np.linalg.norm(along, axis=-1, keepdims=True)
         ends = (curves.points[:, [0, -1]] - nose[:, None]) @ along[..., None]
+        if not np.all(ends > AHEAD):
+            raise GeometryError(
+                f"trailing edge: a side of a section ends at {float(ends.min()):.3g} of its chord, "
+                f"must be behind {AHEAD:g}; are the airfoils' points in order?"
+            )
         return cls(nose, along, ends[..., 0], 0.5 * (width - curves.edge_width))
 
     def __call__(self, points: Array) -> Array:

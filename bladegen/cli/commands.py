@@ -1,68 +1,113 @@
-"""The command line: parse, call, print.  Nothing is computed here."""
+"""The command line: which commands there are, and how one is run.
 
-import json
+Each command is a function in a module of its own, imported when it is asked for: a new one is a
+module, a line in SUMMARIES and two in `function_of`.
+"""
+
 import logging
 import sys
-from pathlib import Path
+from collections.abc import Callable
+from functools import cache
 from typing import Annotated, Any
 
 import typer
+import typer.core
+import typer.main
 
 from bladegen import __version__
-from bladegen.cli import space
-from bladegen.cli.check import check
-from bladegen.cli.convert import convert
-from bladegen.cli.family import family
-from bladegen.cli.formats import formats
-from bladegen.cli.groups import grouped
-from bladegen.cli.options import (
-    LANDMARKS,
-    MAKING,
-    PRODUCING,
-    Airfoils,
-    BladeName,
-    Formats,
-    Json,
-    Landmarks,
-    Making,
-    Producing,
-    Target,
-    suffixes_of,
-)
 from bladegen.cli.output import CLOSED_PIPE, OutputError, guarded
-from bladegen.cli.perturb import NO_CHANGES, Changes
-from bladegen.cli.studio import studio
-from bladegen.cli.terminal import (
-    log_to_terminal,
-    print_figures,
-    print_findings,
-    print_summary,
-    print_table,
-    progress_bar,
-)
-from bladegen.cli.view import KEYS, plot, preview
 from bladegen.errors import BladegenError
 from bladegen.support.stopping import Stopped, stopped_by_signals
+from bladegen.views.keys import help_text
 
-__all__ = ["app", "main"]
+__all__ = ["SUMMARIES", "app", "command_of", "function_of", "main"]
+
+SUMMARIES = {
+    "list": "List the bundled blades.",
+    "info": "Show what a blade's definition holds.",
+    "build": "Build a blade: a STEP solid, meshes, grids, a picture and a report.",
+    "perturb": "Perturb a blade consistently and build it.",
+    "family": "Make a family of perturbed blades: sections, a manifest, files and a contact sheet.",
+    "check": "Measure a solid, a mesh or a blade definition, or the distance between two of them.",
+    "convert": "Convert a blade between file formats, and say what the new one cannot hold.",
+    "formats": "List the formats that are read and written, those of plug-ins too.",
+    "preview": "Look at a blade: in a window, or as a picture, a page, a GIF or a film.",
+    "plot": "Draw diagrams of a blade.",
+    "studio": "See a blade in the browser and play with it: sliders, checks, exports.",
+    "space": "Make and look at shape spaces.",
+}
+CONTEXT = {"help_option_names": ["-h", "--help"]}
+
+
+class Commands(typer.core.TyperGroup):
+    """The commands by name, each imported when it is asked for; `--help` lists their summaries."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings | {"commands": dict.fromkeys(SUMMARIES)})
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
+        """Return a command, or None if there is none of this name."""
+        return command_of(cmd_name) if cmd_name in SUMMARIES else None
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002
+        """Write the summaries, without importing a command."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(SUMMARIES.items()))
+
+
+def function_of(name: str) -> Any:
+    """Return the function that a command runs, or the Typer of a group of commands."""
+    run: Callable[..., None]
+    match name:
+        case "list":
+            from bladegen.cli.blades import list_blades as run
+        case "info":
+            from bladegen.cli.blades import info as run
+        case "build":
+            from bladegen.cli.build import build as run
+        case "perturb":
+            from bladegen.cli.build import perturb as run
+        case "family":
+            from bladegen.cli.family import family as run
+        case "check":
+            from bladegen.cli.check import check as run
+        case "convert":
+            from bladegen.cli.convert import convert as run
+        case "formats":
+            from bladegen.cli.formats import formats as run
+        case "preview":
+            from bladegen.cli.view import preview as run
+        case "plot":
+            from bladegen.cli.view import plot as run
+        case "studio":
+            from bladegen.cli.studio import studio as run
+        case _:
+            from bladegen.cli.space import app as space
+
+            return space
+    return run
+
+
+@cache
+def command_of(name: str) -> Any:
+    """Return the command of a name."""
+    run = function_of(name)
+    if isinstance(run, typer.Typer):
+        return typer.main.get_command(run)
+    alone = typer.Typer(add_completion=False, context_settings=CONTEXT)
+    alone.command(name, epilog=help_text() if name == "preview" else None)(run)
+    return typer.main.get_command(alone)
+
 
 app = typer.Typer(
     name="bladegen",
+    cls=Commands,
     help="Wind turbine blades from spanwise tables to STEP solids, meshes and pictures.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    rich_markup_mode=None,
+    context_settings=CONTEXT,
 )
-
-
-app.add_typer(space.app, name="space")
-app.command()(check)
-app.command()(convert)
-app.command()(family)
-app.command()(formats)
-app.command(epilog=KEYS)(preview)
-app.command()(plot)
-app.command()(studio)
 
 
 def main() -> None:
@@ -114,148 +159,9 @@ def begin(
 ) -> None:
     """Wind turbine blades from spanwise tables to STEP solids, meshes and pictures."""
     if verbose:
+        from bladegen.cli.terminal import log_to_terminal
+
         log_to_terminal(logging.INFO if verbose == 1 else logging.DEBUG)
     if show:
         typer.echo(f"bladegen {__version__}")
         raise typer.Exit
-
-
-@app.command("list")
-def list_blades() -> None:
-    """List the bundled blades."""
-    from bladegen.formats.reading import bundled, read
-
-    rows = []
-    for name in bundled():
-        definition = read(name)
-        rows.append(
-            [
-                name,
-                definition.description,
-                f"{definition.length:.1f} m",
-                str(len({station.airfoil.name for station in definition.stations})),
-            ]
-        )
-    print_table(["name", "blade", "length", "airfoils"], rows)
-
-
-@app.command()
-def info(blade: BladeName, airfoils: Airfoils = None, as_json: Json = False) -> None:
-    """Show what a blade's definition holds."""
-    from bladegen.formats.reading import read
-    from bladegen.views.tables import definition_figures, station_rows
-
-    definition = read(blade, airfoils=airfoils)
-    figures = definition_figures(definition)
-    if as_json:
-        typer.echo(json.dumps(figures, indent=2))
-        return
-    print_figures(figures["blade"], {k: v for k, v in figures.items() if not isinstance(v, list)})
-    print_table(
-        ["eta", "z m", "airfoil", "chord m", "twist deg", "thickness"],
-        station_rows(definition),
-        title="stations",
-    )
-    print_findings(figures["findings"])
-
-
-Mirror = Annotated[
-    bool,
-    typer.Option(
-        "--mirror",
-        help="The mirror image in all files: its rotor turns anticlockwise seen from upwind.",
-    ),
-]
-
-
-@app.command()
-@grouped
-def build(
-    blade: BladeName,
-    output: Target,
-    formats: Formats = None,
-    landmarks: Landmarks = LANDMARKS,
-    making: Making = MAKING,
-    producing: Producing = PRODUCING,
-    rotor: Annotated[
-        bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
-    ] = False,
-    mirror: Mirror = False,
-    hub_radius: Annotated[
-        str | None,
-        typer.Option(metavar="LENGTH", help="Of the rotor, instead of the definition's; 2m."),
-    ] = None,
-    precone: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ANGLE",
-            help="Of the rotor in degrees, tips upwind, instead of the definition's.",
-        ),
-    ] = None,
-) -> None:
-    """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
-    options, suffixes = producing.options(), suffixes_of(formats)
-    made = making.blade(blade, landmarks)
-    made = made.mirror_image() if mirror else made
-    whole = None
-    if not rotor and (hub_radius or precone):
-        raise BladegenError("hub-radius, precone: are of the rotor; add --rotor, or leave them out")
-    if rotor:
-        from bladegen.cad.rotor import rotor_of
-        from bladegen.cli.texts import metres, radians
-
-        whole = rotor_of(
-            made,
-            hub_radius=None if hub_radius is None else metres(hub_radius, "hub-radius"),
-            cone=None if precone is None else radians(precone, "precone"),
-        )
-    _build(made, output, suffixes, options, whole)
-
-
-@app.command()
-@grouped
-def perturb(
-    blade: BladeName,
-    output: Target,
-    changes: Changes = NO_CHANGES,
-    formats: Formats = None,
-    landmarks: Landmarks = LANDMARKS,
-    making: Making = MAKING,
-    producing: Producing = PRODUCING,
-    mirror: Mirror = False,
-) -> None:
-    """Perturb a blade consistently and build it."""
-    if not changes.asked:
-        raise BladegenError(
-            f"perturb: nothing is to change; give --pga, --thickness, --twist or another change, "
-            f"or make the blade as it is: bladegen build {blade} -o {output}"
-        )
-    options, suffixes = producing.options(), suffixes_of(formats)
-    made = changes.applied(making.blade(blade, landmarks))
-    _build(made.mirror_image() if mirror else made, output, suffixes, options)
-
-
-def _build(
-    blade: Any, output: Path, formats: tuple[str, ...], options: Any, rotor: Any = None
-) -> None:
-    """Build a blade's files and print what was made, a missed tolerance included."""
-    from bladegen.errors import PromiseError
-    from bladegen.exports.build import DEFAULT_FORMATS
-    from bladegen.exports.build import build as build_files
-
-    miss = None
-    with progress_bar() as progress:
-        try:
-            build_files(
-                blade,
-                output,
-                formats=formats or DEFAULT_FORMATS,
-                options=options,
-                rotor=rotor,
-                progress=progress,
-            )
-        except PromiseError as error:
-            miss = error
-    print_summary(output, blade.name)
-    if miss is not None:
-        raise miss

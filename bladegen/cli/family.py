@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from bladegen.cli.changes import ChordLine
 from bladegen.cli.groups import grouped
 from bladegen.cli.options import (
     LANDMARKS,
@@ -19,7 +20,6 @@ from bladegen.cli.options import (
     Target,
     suffixes_of,
 )
-from bladegen.cli.perturb import ChordLine
 from bladegen.cli.terminal import print_table, remark, variants_bar
 from bladegen.errors import FamilyError
 from bladegen.support.stopping import Stopped

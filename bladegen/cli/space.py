@@ -11,7 +11,12 @@ from bladegen.cli.terminal import print_findings, print_space, print_table, prog
 
 __all__ = ["app"]
 
-app = typer.Typer(help="Make and look at shape spaces.", no_args_is_help=True)
+app = typer.Typer(
+    help="Make and look at shape spaces.",
+    no_args_is_help=True,
+    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 

@@ -6,17 +6,14 @@ from typing import Annotated, Any
 
 import typer
 
+from bladegen.cli.changes import NO_CHANGES, Changes
 from bladegen.cli.check import blade_of
 from bladegen.cli.groups import grouped
 from bladegen.cli.options import LANDMARKS, MAKING, BladeName, Landmarks, Making, ending_in
-from bladegen.cli.perturb import NO_CHANGES, Changes
 from bladegen.cli.terminal import progress_bar, variants_bar
 from bladegen.errors import BladegenError
-from bladegen.views.keys import help_text
 
-__all__ = ["KEYS", "plot", "preview"]
-
-KEYS = help_text()
+__all__ = ["plot", "preview"]
 
 
 class Colour(StrEnum):

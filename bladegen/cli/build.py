@@ -1,0 +1,124 @@
+"""`bladegen build` and `bladegen perturb`: the files of one blade."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen.cli.changes import NO_CHANGES, Changes
+from bladegen.cli.groups import grouped
+from bladegen.cli.options import (
+    LANDMARKS,
+    MAKING,
+    PRODUCING,
+    BladeName,
+    Formats,
+    Landmarks,
+    Making,
+    Producing,
+    Target,
+    suffixes_of,
+)
+from bladegen.cli.terminal import print_summary, progress_bar
+from bladegen.errors import BladegenError
+
+__all__ = ["build", "perturb"]
+
+Mirror = Annotated[
+    bool,
+    typer.Option(
+        "--mirror",
+        help="The mirror image in all files: its rotor turns anticlockwise seen from upwind.",
+    ),
+]
+
+
+@grouped
+def build(
+    blade: BladeName,
+    output: Target,
+    formats: Formats = None,
+    landmarks: Landmarks = LANDMARKS,
+    making: Making = MAKING,
+    producing: Producing = PRODUCING,
+    rotor: Annotated[
+        bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
+    ] = False,
+    mirror: Mirror = False,
+    hub_radius: Annotated[
+        str | None,
+        typer.Option(metavar="LENGTH", help="Of the rotor, instead of the definition's; 2m."),
+    ] = None,
+    precone: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ANGLE",
+            help="Of the rotor in degrees, tips upwind, instead of the definition's.",
+        ),
+    ] = None,
+) -> None:
+    """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
+    options, suffixes = producing.options(), suffixes_of(formats)
+    made = making.blade(blade, landmarks)
+    made = made.mirror_image() if mirror else made
+    whole = None
+    if not rotor and (hub_radius or precone):
+        raise BladegenError("hub-radius, precone: are of the rotor; add --rotor, or leave them out")
+    if rotor:
+        from bladegen.cad.rotor import rotor_of
+        from bladegen.cli.texts import metres, radians
+
+        whole = rotor_of(
+            made,
+            hub_radius=None if hub_radius is None else metres(hub_radius, "hub-radius"),
+            cone=None if precone is None else radians(precone, "precone"),
+        )
+    _build(made, output, suffixes, options, whole)
+
+
+@grouped
+def perturb(
+    blade: BladeName,
+    output: Target,
+    changes: Changes = NO_CHANGES,
+    formats: Formats = None,
+    landmarks: Landmarks = LANDMARKS,
+    making: Making = MAKING,
+    producing: Producing = PRODUCING,
+    mirror: Mirror = False,
+) -> None:
+    """Perturb a blade consistently and build it."""
+    if not changes.asked:
+        raise BladegenError(
+            f"perturb: nothing is to change; give --pga, --thickness, --twist or another change, "
+            f"or make the blade as it is: bladegen build {blade} -o {output}"
+        )
+    options, suffixes = producing.options(), suffixes_of(formats)
+    made = changes.applied(making.blade(blade, landmarks))
+    _build(made.mirror_image() if mirror else made, output, suffixes, options)
+
+
+def _build(
+    blade: Any, output: Path, formats: tuple[str, ...], options: Any, rotor: Any = None
+) -> None:
+    """Build a blade's files and print what was made, a missed tolerance included."""
+    from bladegen.errors import PromiseError
+    from bladegen.exports.build import DEFAULT_FORMATS
+    from bladegen.exports.build import build as build_files
+
+    miss = None
+    with progress_bar() as progress:
+        try:
+            build_files(
+                blade,
+                output,
+                formats=formats or DEFAULT_FORMATS,
+                options=options,
+                rotor=rotor,
+                progress=progress,
+            )
+        except PromiseError as error:
+            miss = error
+    print_summary(output, blade.name)
+    if miss is not None:
+        raise miss

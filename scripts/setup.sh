@@ -13,14 +13,14 @@ fail() {
 
 find_python() {
     local name
-    for name in "${PYTHON:-}" python3.13 python3.12 python3.11 python3; do
+    for name in "${PYTHON:-}" python3.14 python3.13 python3.12 python3.11 python3; do
         if [ -n "$name" ] && command -v "$name" >/dev/null 2>&1 &&
-            "$name" -c 'import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null; then
+            "$name" -c 'import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 15))' 2>/dev/null; then
             command -v "$name"
             return
         fi
     done
-    fail "needs Python 3.11 to 3.13 with venv; on Debian: apt-get install python3 python3-venv"
+    fail "needs Python 3.11 to 3.14 with venv; on Debian: apt-get install python3 python3-venv"
 }
 
 # Prints the Debian packages of the shared libraries that cannot be loaded.

@@ -4,7 +4,6 @@ What is read is a regular file of bounded size; a pipe or a device has no end.
 """
 
 import errno
-import fcntl
 import hashlib
 import logging
 import os
@@ -12,7 +11,7 @@ import re
 import stat
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -30,6 +29,7 @@ __all__ = [
     "safe_stem",
 ]
 
+RETRY = 0.2  # seconds in which a lock whose file was taken away is made anew
 END_SLACK = 8  # bytes of line ends behind the last word
 
 logger = logging.getLogger(__name__)
@@ -76,36 +76,27 @@ def alone(path: Path, stem: str) -> Iterator[None]:
     ExportError
         If another run holds them, or the folder cannot be written.
     """
-    lock = path / f".{stem}.lock"
-    while True:
-        try:
-            held = lock.open("w")
-        except OSError as error:
-            raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
-        with held:
-            try:
-                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError as error:
-                if error.errno in _TAKEN:
-                    raise ExportError(f"{path}: another run is writing {stem} there") from None
-            if not _is_at(held.fileno(), lock):
-                continue  # its last holder took it away in between
-            try:
-                yield
-            finally:
-                lock.unlink(missing_ok=True)
-        return
+    from filelock import FileLock, Timeout
 
-
-_TAKEN = (errno.EWOULDBLOCK, errno.EACCES)  # other errors: a file system without locks
-
-
-def _is_at(handle: int, path: Path) -> bool:
-    """Tell whether an open file is still the one at a path."""
+    file = path / f".{stem}.lock"
+    lock = FileLock(file, timeout=RETRY, poll_interval=0.1 * RETRY)
     try:
-        return os.path.samestat(os.fstat(handle), path.stat())
-    except FileNotFoundError:
-        return False
+        lock.acquire()
+    except Timeout:
+        raise ExportError(f"{path}: another run is writing {stem} there") from None
+    except OSError as error:
+        if error.errno != errno.ENOLCK:  # a file system without locks
+            raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
+    try:
+        yield
+    finally:
+        if os.name == "posix":  # while it is held, so that it is nobody else's
+            file.unlink(missing_ok=True)
+            lock.release()
+        else:  # Windows takes away no file that is open
+            lock.release()
+            with suppress(OSError):
+                file.unlink(missing_ok=True)
 
 
 @contextmanager

@@ -27,9 +27,11 @@ CALLS = [
     "perturb BLADE -o OUT --twist 1 --format sections.csv --landmarks 101",
     "plot BLADE -o OUT/a.svg --what planform --landmarks 101",
     "preview BLADE --html OUT/a.html --landmarks 101",
-    "preview --compare BLADE BLADE --html OUT/a.html",
+    "preview --compare BLADE BLADE --html OUT/a.html --landmarks 101",
 ]
-FAMILY = "family BLADE -o OUT/f --seed 3 --spans 12 --space none --vary chord=0.9:1.1 --count 2"
+FAMILY = (
+    "family BLADE -o OUT/f --seed 3 --spans 12 --space none --vary chord=0.9:1.1 --count 2 --jobs 1"
+)
 
 
 @pytest.fixture

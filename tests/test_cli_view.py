@@ -56,7 +56,7 @@ def test_preview_writes_sweeps(small, tmp_path):
     gif, film = tmp_path / "a.gif", tmp_path / "a.mp4"
     result = run(
         "preview", "nrel5mw", "--gif", gif, "--mp4", film, "--frames", 4, "--sweep", "twist=-3:3",
-        "--sweep", "t1=-0.05:0.05",
+        "--sweep", "t1=-0.05:0.05", "--landmarks", 101,
     )  # fmt: skip
     assert result.exit_code == 0, result.output
     assert f"wrote {gif}: 4 frames" in result.output
@@ -87,9 +87,9 @@ def test_what_cannot_be_shown_is_said_in_a_line(words, message, tmp_path, monkey
 
 
 def test_preview_compares_two(tmp_path, monkeypatch):
-    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
-    one = bg.export(blade, tmp_path / "one.stl", stations=60)
-    other = bg.export(blade.perturbed(twist=0.02), tmp_path / "other.stl", stations=60, unit="mm")
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=51)
+    one = bg.export(blade, tmp_path / "one.stl", stations=40)
+    other = bg.export(blade.perturbed(twist=0.02), tmp_path / "other.stl", stations=40, unit="mm")
     png, html = tmp_path / "a.png", tmp_path / "a.html"
     result = run("preview", "--compare", one, other, "--screenshot", png, "--html", html)
     assert result.exit_code == 0, result.output
@@ -115,8 +115,9 @@ def test_plot_writes_a_file_a_diagram(tmp_path):
 
 def test_plot_writes_one_file(tmp_path):
     pdf, png = tmp_path / "all.pdf", tmp_path / "one.png"
-    assert run("plot", "nrel5mw", "-o", pdf, "--twist", 1, "--landmarks", 101).exit_code == 0
-    assert pdf.read_bytes().count(b"/Type /Page ") == len(What) - 1
+    two = ("--what", "planform", "--what", "path")
+    assert run("plot", "nrel5mw", "-o", pdf, "--twist", 1, "--landmarks", 101, *two).exit_code == 0
+    assert pdf.read_bytes().count(b"/Type /Page ") == 2
     result = run("plot", "nrel5mw", "-o", png, "--what", "planform", "--landmarks", 101)
     assert result.output == f"wrote {png}\n"
     assert Image.open(png).size[0] > 1000

@@ -1,3 +1,5 @@
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -40,6 +42,12 @@ def least_height(made):
     sides = np.roll(corners, -1, axis=1) - corners
     longest = np.linalg.norm(sides, axis=2).max(axis=1)
     return np.min(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / longest)
+
+
+@cache
+def whole(name):
+    """A bundled blade as it is unless something else is asked for."""
+    return Blade.from_definition(read(name))
 
 
 EDGES = AsGiven(), Sharp(), MinimumThickness(0.01)
@@ -138,7 +146,7 @@ def test_landmarks_that_coincide_leave_no_degenerate_triangle(spoil, gap):
 @pytest.mark.parametrize("edge", [AsGiven(), Sharp(), MinimumThickness(0.002)])
 @pytest.mark.parametrize("tip", [flat_tip, round_tip])
 def test_blades_have_no_degenerate_triangle(name, edge, tip):
-    blade = Blade.from_definition(read(name), trailing_edge=edge)
+    blade = whole(name).with_trailing_edge(edge)
     assert least_height(mesh.from_blade(blade, tip=tip)) > mesh.SAME_POINT
 
 
@@ -152,13 +160,12 @@ def test_a_rounded_tip_adds_the_volume_of_half_an_ellipsoid():
 
 
 def test_the_default_is_a_quarter_of_a_million_triangles():
-    blade = Blade.from_definition(read("iea15mw"))
-    assert 230_000 < len(mesh.from_blade(blade).faces) < 250_000
+    assert 230_000 < len(mesh.from_blade(whole("iea15mw")).faces) < 250_000
 
 
 @pytest.mark.parametrize("name", bundled())
 def test_trimesh_agrees(name):
-    made = mesh.from_blade(Blade.from_definition(read(name)), stations=100)
+    made = mesh.from_blade(whole(name), stations=100)
     other = mesh_files.to_trimesh(made)
     assert other.is_watertight
     assert other.is_winding_consistent

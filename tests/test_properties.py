@@ -57,6 +57,7 @@ def bent_pipe(angle: float, planes) -> Blade:
         ),
         planes=planes,
         trailing_edge=AsGiven(),
+        landmarks=201,
     )
 
 

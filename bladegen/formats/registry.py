@@ -7,23 +7,17 @@ wherever one is looked for, so that no plug-in can take the place of one.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import DefinitionError, ExportError, Finding
-from bladegen.formats.airfoils.writing import write_lednicer, write_selig
 from bladegen.formats.common.document import Notes
 from bladegen.formats.hawc2 import reading as hawc2
-from bladegen.formats.hawc2.into import write_into_htc
-from bladegen.formats.hawc2.writing import write as write_hawc2
 from bladegen.formats.numad import reading as numad
 from bladegen.formats.openfast import reading as openfast
-from bladegen.formats.openfast.into import write_into_main
-from bladegen.formats.openfast.writing import write as write_openfast
 from bladegen.formats.qblade import reading as qblade
 from bladegen.formats.tables import reading as tables
-from bladegen.formats.tables.writing import write as write_table
 from bladegen.formats.windio import turbine_file as windio
 from bladegen.formats.windio import version1, version2
 from bladegen.formats.windio.into import write_into_turbine
@@ -166,6 +160,45 @@ def _require_suffixes(suffixes: tuple[str, ...], name: str) -> None:
         )
 
 
+# Who reads a blade loads nothing that makes one to write it.
+
+
+def _write_openfast(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
+    from bladegen.formats.openfast.writing import write
+
+    return write(definition, path)
+
+
+def _into_openfast(definition: BladeDefinition, main: Path, path: Path) -> tuple[Finding, ...]:
+    from bladegen.formats.openfast.into import write_into_main
+
+    return write_into_main(definition, main, path)
+
+
+def _write_hawc2(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
+    from bladegen.formats.hawc2.writing import write
+
+    return write(definition, path)
+
+
+def _into_hawc2(definition: BladeDefinition, htc: Path, path: Path) -> tuple[Finding, ...]:
+    from bladegen.formats.hawc2.into import write_into_htc
+
+    return write_into_htc(definition, htc, path)
+
+
+def _write_table(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
+    from bladegen.formats.tables.writing import write
+
+    return write(definition, path)
+
+
+def _write_airfoils(definition: BladeDefinition, path: Path, layout: str) -> tuple[Finding, ...]:
+    from bladegen.formats.airfoils.writing import write_folder
+
+    return write_folder(definition, path, layout)
+
+
 FORMATS = (
     Format(
         "windIO",
@@ -180,14 +213,14 @@ FORMATS = (
     Format(
         "OpenFAST",
         Reader(openfast.SUFFIXES, openfast.MARK, openfast.recognises, openfast.read),
-        (Writer("openfast", "OpenFAST (AeroDyn blade)", (".dat",), write_openfast, True, GRID),),
-        put_back=PutBack((".dat",), write_into_main, GRID),
+        (Writer("openfast", "OpenFAST (AeroDyn blade)", (".dat",), _write_openfast, True, GRID),),
+        put_back=PutBack((".dat",), _into_openfast, GRID),
     ),
     Format(
         "HAWC2",
         Reader(hawc2.SUFFIXES, hawc2.MARK, hawc2.recognises, hawc2.read),
-        (Writer("hawc2", "HAWC2", (".htc",), write_hawc2, True, GRID),),
-        put_back=PutBack((".htc",), write_into_htc, GRID),
+        (Writer("hawc2", "HAWC2", (".htc",), _write_hawc2, True, GRID),),
+        put_back=PutBack((".htc",), _into_hawc2, GRID),
     ),
     Format("QBlade", Reader(qblade.SUFFIXES, qblade.MARK, qblade.recognises, qblade.read)),
     Format("NuMAD", Reader(numad.SUFFIXES, numad.MARK, numad.recognises, numad.read)),
@@ -195,15 +228,21 @@ FORMATS = (
         "spanwise table",
         Reader(tables.SUFFIXES, tables.MARK, tables.recognises, tables.read),
         (
-            Writer("csv", "spanwise table (CSV)", (".csv",), write_table),
-            Writer("xlsx", "spanwise table (IEA workbook)", (".xlsx",), write_table, False, GRID),
+            Writer("csv", "spanwise table (CSV)", (".csv",), _write_table),
+            Writer("xlsx", "spanwise table (IEA workbook)", (".xlsx",), _write_table, False, GRID),
         ),
     ),
     Format(
         "airfoil files",
         writers=tuple(
-            Writer(name, f"a folder of airfoil files ({name.title()})", ("",), write, False, None)
-            for name, write in (("selig", write_selig), ("lednicer", write_lednicer))
+            Writer(
+                name,
+                f"a folder of airfoil files ({name.title()})",
+                ("",),
+                partial(_write_airfoils, layout=name),
+                tolerance=None,
+            )
+            for name in ("selig", "lednicer")
         ),
     ),
 )

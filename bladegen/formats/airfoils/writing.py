@@ -6,7 +6,6 @@ pressure side, each from leading to trailing edge, with the leading edge in both
 """
 
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,7 @@ from bladegen.support.arguments import instance, one_of, path_of
 from bladegen.support.arrays import Array
 from bladegen.support.files import folder, safe_stem
 
-__all__ = ["LAYOUTS", "write_airfoil", "write_lednicer", "write_selig"]
+__all__ = ["LAYOUTS", "write_airfoil", "write_folder"]
 
 
 def _selig(points: Array) -> list[str]:
@@ -66,7 +65,7 @@ def write_airfoil(airfoil: Airfoil, path: str | Path, *, layout: str = "selig") 
     write_lines(path_of(path, "path", ExportError), lines)
 
 
-def _write(definition: BladeDefinition, path: Path, layout: str) -> tuple[Finding, ...]:
+def write_folder(definition: BladeDefinition, path: Path, layout: str) -> tuple[Finding, ...]:
     """Write a definition's airfoils into a folder, one file each."""
     target = folder(path)
     stems: dict[str, str] = {}
@@ -82,7 +81,3 @@ def _write(definition: BladeDefinition, path: Path, layout: str) -> tuple[Findin
     return (
         Finding("airfoil files", f"{len(stems)} airfoils; chord, twist, axis and places left out"),
     )
-
-
-write_selig = partial(_write, layout="selig")
-write_lednicer = partial(_write, layout="lednicer")

@@ -11,7 +11,6 @@ import numpy as np
 
 from bladegen.airfoils.polars import Polar
 from bladegen.definition.blade_definition import BladeDefinition
-from bladegen.definition.blending import without_polars
 from bladegen.errors import DefinitionError, ExportError
 from bladegen.formats.common.document import Node, Notes, Range
 
@@ -102,6 +101,8 @@ def require_polars(definition: BladeDefinition, path: Path, tool: str) -> None:
     ExportError
         If some have none.
     """
+    from bladegen.definition.blending import without_polars  # late: who reads asks for none
+
     bare = without_polars(definition)
     if bare:
         raise ExportError(

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import yaml
 
-from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import (
     Airfoil,
     BladeDefinition,
@@ -118,6 +117,8 @@ def within(definition: BladeDefinition, note: Note) -> BladeDefinition:
             most = max(most, -low, high - 1.0)
     if not moved:
         return definition
+    from bladegen.blade.blade import Blade  # late: who reads windIO makes no blade
+
     result = replace(
         definition,
         stations=tuple(
@@ -130,7 +131,8 @@ def within(definition: BladeDefinition, note: Note) -> BladeDefinition:
         f"{len(moved)} with x up to {most:.2g} outside of 0 to 1, which windIO does not allow: "
         "moved along their chords and scaled; the offset along the chord takes it up",
     )
-    shift = _shift(Blade.from_definition(definition), Blade.from_definition(result))
+    before, after = (Blade.from_definition(one).profiles for one in (definition, result))
+    shift = _shift(before, after)
     stations = [station.eta for station in definition.stations]
     offset, pitch, chord = definition.section_offset_y, definition.pitch_axis, definition.chord
     if pitch is not None:
@@ -143,10 +145,12 @@ def within(definition: BladeDefinition, note: Note) -> BladeDefinition:
     return replace(result, section_offset_y=made)
 
 
-def _shift(before: Blade, after: Blade) -> Callable[[Array], Array]:
-    """Return by how much sections of one blade lie behind another's, in chords, over span.
+def _shift(
+    before: Callable[[Array], Array], after: Callable[[Array], Array]
+) -> Callable[[Array], Array]:
+    """Return by how much one blade's profiles lie behind another's, in chords, over span.
 
-    Sections are the same but for this; each place is looked at once.
+    They are the same but for this; each place is looked at once.
     """
     known: dict[float, float] = {}
 
@@ -154,7 +158,7 @@ def _shift(before: Blade, after: Blade) -> Callable[[Array], Array]:
         places = [place for place in eta.reshape(-1).tolist() if place not in known]
         if places:
             new = np.array(places)
-            by = after.profiles(new)[..., 0] - before.profiles(new)[..., 0]
+            by = after(new)[..., 0] - before(new)[..., 0]
             known.update(zip(places, by.mean(axis=-1).tolist(), strict=True))
         return np.array([known[place] for place in eta.reshape(-1).tolist()]).reshape(eta.shape)
 

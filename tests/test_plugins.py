@@ -13,7 +13,7 @@ import numpy as np
 import bladegen as bg
 from bladegen.exports.options import Kind
 from bladegen.exports.registry import Format as Export
-from bladegen.formats.registry import Format, Reader, Writer
+from bladegen.formats.format import Format, Reader, Writer
 
 print("toys are loaded")
 

@@ -4,8 +4,9 @@ from pathlib import Path
 
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import Finding
+from bladegen.formats.format import Format, PutBack
 from bladegen.formats.proof import put_in_place, read_back, taken_back
-from bladegen.formats.registry import Format, PutBack, every
+from bladegen.formats.registry import every
 from bladegen.support.files import require_suffix
 
 __all__ = ["write_into"]

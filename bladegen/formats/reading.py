@@ -9,7 +9,8 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.definition.plausibility import doubts
 from bladegen.errors import DefinitionError, FileError, Finding
 from bladegen.formats.common.document import Notes
-from bladegen.formats.registry import FORMATS, Reader, every, plugins
+from bladegen.formats.format import Reader
+from bladegen.formats.registry import FORMATS, every, plugins
 from bladegen.support.arguments import path_of, shown, suggestion
 
 __all__ = ["SUFFIXES", "bundled", "holds_blade", "is_read", "read"]

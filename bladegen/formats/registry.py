@@ -6,13 +6,14 @@ wherever one is looked for, so that no plug-in can take the place of one.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import DefinitionError, ExportError, Finding
 from bladegen.formats.common.document import Notes
+from bladegen.formats.format import Format, PutBack, Reader, Writer
 from bladegen.formats.hawc2 import reading as hawc2
 from bladegen.formats.numad import reading as numad
 from bladegen.formats.openfast import reading as openfast
@@ -23,144 +24,12 @@ from bladegen.formats.windio import version1, version2
 from bladegen.formats.windio.into import write_into_turbine
 from bladegen.support.plugins import Offered, guarded, offered
 
-__all__ = [
-    "FORMATS",
-    "GROUP",
-    "Format",
-    "PutBack",
-    "Reader",
-    "Writer",
-    "every",
-    "plugged",
-    "plugins",
-]
+__all__ = ["FORMATS", "GROUP", "every", "plugged", "plugins"]
 
 GROUP = "bladegen.readers"  # of entry points
-WHOLE = 5e-6  # m; formats with a grid for each quantity hold a blade to 1e-6, where they can
 GRID = 1.5e-3  # m; formats with one grid are within 0.3 or 0.5 mm of each quantity
 
-
-@dataclass(frozen=True)
-class Reader:
-    """How a format is read.
-
-    Parameters
-    ----------
-    suffixes : tuple of str
-        Of its files, lower case, with their dots.
-    mark : str
-        What tells its files from others, in words.
-    recognises : callable
-        Tells by a bounded look whether a file of one of the suffixes is of this format.
-    read : callable
-        From a file, the notes to make on it (`Notes`), and a folder of airfoil files for formats
-        that only name their airfoils (None: the format's own place) to the definition; None if
-        there are problems, which the notes then hold, all of them.  An unset
-        `BladeDefinition.format` becomes the format's name.
-    """
-
-    suffixes: tuple[str, ...]
-    mark: str
-    recognises: Callable[[Path], bool]
-    read: Callable[[Path, Notes, Path | None], BladeDefinition | None]
-
-    def __post_init__(self) -> None:
-        _require_suffixes(self.suffixes, self.mark)
-
-
-@dataclass(frozen=True)
-class Writer:
-    """A way to write a format.
-
-    Parameters
-    ----------
-    name : str
-        By which it is asked for: one word, lower case.
-    title : str
-        What it is called.
-    suffixes : tuple of str
-        Of its files, lower case, "" for a folder; the first way with a suffix is meant by it.
-    write : callable
-        From a definition and a path to what the format cannot hold.  A format of one file writes
-        it through `files.replacing`; one of several writes its main file to the path, and the
-        others beside it, under names that start with the main file's.
-    polars : bool
-        Whether it holds polars.
-    tolerance : float, optional
-        How far a blade may be off that is read back [m] without a finding; None for formats that
-        hold no blade.
-    """
-
-    name: str
-    title: str
-    suffixes: tuple[str, ...]
-    write: Callable[[BladeDefinition, Path], tuple[Finding, ...]]
-    polars: bool = False
-    tolerance: float | None = WHOLE
-
-    def __post_init__(self) -> None:
-        if self.suffixes != ("",):
-            _require_suffixes(self.suffixes, self.name)
-
-
-@dataclass(frozen=True)
-class PutBack:
-    """How a blade is put back into a full model of a tool.
-
-    Parameters
-    ----------
-    suffixes : tuple of str
-        Of the models, lower case, with their dots.
-    write : callable
-        From a definition, the model and a path: writes the model with its blade replaced and
-        everything else as it is, and returns what it cannot hold.
-    tolerance : float
-        How far a blade may be off that is read back [m] without a finding.
-    """
-
-    suffixes: tuple[str, ...]
-    write: Callable[[BladeDefinition, Path, Path], tuple[Finding, ...]]
-    tolerance: float = WHOLE
-
-    def __post_init__(self) -> None:
-        _require_suffixes(self.suffixes, "put_back")
-
-
-@dataclass(frozen=True)
-class Format:
-    """A file format.
-
-    Parameters
-    ----------
-    name : str
-        What it is called.
-    reader : Reader, optional
-        How it is read, if it is.
-    writers : tuple of Writer
-        The ways to write it: versions, layouts, kinds of file.
-    put_back : PutBack, optional
-        How a blade is put back into a model.
-    alone : bool
-        Whether a file of it names no others, so that it can be written elsewhere and read there.
-    """
-
-    name: str
-    reader: Reader | None = None
-    writers: tuple[Writer, ...] = ()
-    put_back: PutBack | None = None
-    alone: bool = False
-
-
-def _require_suffixes(suffixes: tuple[str, ...], name: str) -> None:
-    """Raise unless suffixes are as those of files are looked for."""
-    wrong = [one for one in suffixes if one[:1] != "." or one != one.lower()]
-    if isinstance(suffixes, str) or wrong or not suffixes:
-        raise DefinitionError(
-            f"{name}: suffixes: got {suffixes!r}, must be a tuple such as ('.toy',), lower case"
-        )
-
-
-# Who reads a blade loads nothing that makes one to write it.
+# who reads a blade loads nothing that makes one to write it
 
 
 def _write_openfast(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:

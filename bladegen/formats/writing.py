@@ -11,8 +11,8 @@ from bladegen.errors import ExportError, Finding
 from bladegen.formats import registry
 from bladegen.formats.airfoils.writing import write_airfoil
 from bladegen.formats.common.redefinition import redefined
+from bladegen.formats.format import Writer
 from bladegen.formats.proof import proven
-from bladegen.formats.registry import Writer
 from bladegen.support.arguments import instance, path_of, suggestion
 from bladegen.support.files import require_suffix
 

@@ -1,5 +1,7 @@
 .DEFAULT_GOAL := help
 LOCK = --quiet --universal --python-version 3.11 --no-header --no-emit-index-url --no-annotate
+# What reads, perturbs and writes blades without pictures, families and compiled loops: locks/core.txt
+CORE = annotated-doc|annotated-types|cadquery-ocp|et-xmlfile|filelock|h5py|lxml|markdown-it-py|mdurl|networkx|numpy|openpyxl|pillow|pydantic|pydantic-core|pygments|pyyaml|rich|ruamel-yaml|scipy|shellingham|threadpoolctl|trimesh|typer|typing-extensions|typing-inspection
 .PHONY: help demo lint test test-all docs bench mutants lock licences sbom audit release clean
 
 help: ## show this
@@ -37,6 +39,7 @@ lock: ## pin what is used and what it is developed with, in locks/
 	@./scripts/setup.sh dev
 	.venv/bin/uv pip compile $(LOCK) -o locks/run.txt pyproject.toml
 	.venv/bin/uv pip compile $(LOCK) --all-extras -o locks/dev.txt pyproject.toml
+	grep -E '^($(CORE))==' locks/run.txt | sed 's/^cadquery-ocp==/cadquery-ocp-novtk==/' > locks/core.txt
 
 licences: ## list the licences of all that bladegen needs to run, into docs/licences.md
 	@./scripts/setup.sh dev

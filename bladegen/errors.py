@@ -20,6 +20,7 @@ __all__ = [
     "FileError",
     "Finding",
     "GeometryError",
+    "MissingLibraryError",
     "PerturbationError",
     "PromiseError",
     "RenderError",
@@ -29,6 +30,8 @@ __all__ = [
     "ToleranceError",
     "visible",
 ]
+
+PACKAGES = {"OCP": "cadquery-ocp", "vtkmodules": "pyvista", "PIL": "pillow", "yaml": "pyyaml"}
 
 # control characters (C0, C1), those without a form of their own that turn the direction of what
 # follows or join it, halves of pairs, and marks of lines and paragraphs
@@ -135,6 +138,18 @@ class SizeError(PromiseError):
 
 class ExportError(BladegenError):
     """A file cannot be written in the format or at the place asked for."""
+
+
+class MissingLibraryError(ExportError, ImportError):
+    """A library that only some files need is not installed, or cannot be loaded."""
+
+    def __init__(self, error: ImportError) -> None:
+        library = (error.name or "a library").partition(".")[0]
+        package = PACKAGES.get(library, library)
+        super().__init__(
+            f"this needs {library}, which cannot be imported ({' '.join(str(error).split())}); "
+            f"pip install {package}, and the system libraries that docs/install.md names"
+        )
 
 
 class RenderError(BladegenError):

@@ -11,6 +11,23 @@ import pytest
 
 import bladegen
 
+CORE = """
+import sys
+import bladegen as bg
+blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
+blade = blade.perturbed(bg.ShapeSpace.bundled(), [0.01, 0.0, 0.0, 0.0], thickness=1.05)
+for suffix in sys.argv[1].split():
+    bg.export(blade, f"blade.{suffix}")
+    print(suffix)
+print("volume", bg.read("blade.yaml").name, bg.read("blade.dat").length)
+print("heavy", *{"vtkmodules", "numba", "pyarrow", "casadi", "cadquery"} & set(sys.modules))
+try:
+    bg.export(blade, "blade.png")
+except bg.BladegenError as error:
+    print(error)
+"""
+SUFFIXES = "step iges brep stl glb obj ply cgns p3d yaml dat htc csv"
+MOST = 650  # MB of an environment without pictures
 ROOT = Path(bladegen.__file__).parent.parent
 BLADES = ("dtu10mw", "iea15mw", "nrel5mw")
 RUN = "import sys; from bladegen.cli.commands import main; sys.argv[0] = 'bladegen'; main()"
@@ -97,3 +114,34 @@ def test_it_is_the_wheel_that_runs_there(unpacked, tmp_path):
         check=True,
     )
     assert done.stdout.startswith(str(unpacked))
+
+
+@pytest.mark.nightly
+def test_the_core_alone_reads_perturbs_and_writes(dist, tmp_path):
+    """locks/core.txt in a fresh environment, without what its libraries would bring along."""
+    subprocess.run([sys.executable, "-m", "venv", str(tmp_path / "core")], check=True)
+    python = tmp_path / "core" / "bin" / "python"
+    pip = [python, "-m", "pip", "install", "--quiet", "--no-deps"]
+    subprocess.run([*pip, "-r", ROOT / "locks" / "core.txt"], check=True)
+    subprocess.run([*pip, dist[0]], check=True)
+    folder = tmp_path / "core"
+    size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+    assert size < MOST * 1e6
+    plain = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+
+    def run(*words):
+        return subprocess.run(
+            [python, *words], cwd=tmp_path, env=plain, capture_output=True, text=True, check=False
+        )
+
+    done = run("-c", CORE, SUFFIXES)
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert lines[:-3] == SUFFIXES.split()
+    assert lines[-2] == "heavy"
+    assert "pip install pyvista" in lines[-1]
+    for words in ("preview nrel5mw --screenshot a.png", "family nrel5mw -o f --count 2"):
+        said = run("-m", "bladegen", *words.split())
+        assert said.returncode == 1
+        assert len(said.stderr.strip().splitlines()) == 1
+        assert "pip install" in said.stderr

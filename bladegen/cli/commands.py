@@ -16,7 +16,7 @@ import typer.main
 
 from bladegen import __version__
 from bladegen.cli.output import CLOSED_PIPE, OutputError, guarded
-from bladegen.errors import BladegenError
+from bladegen.errors import BladegenError, MissingLibraryError
 from bladegen.support.stopping import Stopped, stopped_by_signals
 from bladegen.views.keys import help_text
 
@@ -127,21 +127,11 @@ def main() -> None:
         sys.stderr.write(f"bladegen: {stop}\n")
         sys.exit(stop.status)
     except ImportError as error:  # libraries are imported where they are needed
-        sys.stderr.write(f"bladegen: {_missing(error)}\n")
+        sys.stderr.write(f"bladegen: {MissingLibraryError(error)}\n")
         sys.exit(1)
     except KeyboardInterrupt:
         sys.stderr.write("bladegen: interrupted\n")
         sys.exit(130)
-
-
-def _missing(error: ImportError) -> str:
-    """Say in a line which library a command needs and does not find, or cannot load."""
-    library = (error.name or "a library").partition(".")[0]
-    package = {"OCP": "cadquery-ocp", "vtkmodules": "vtk", "PIL": "pillow"}.get(library, library)
-    return (
-        f"this command needs {library}, which cannot be imported ({' '.join(str(error).split())}); "
-        f"pip install {package}, and the system libraries that the README names"
-    )
 
 
 @app.callback(invoke_without_command=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bladegen.blade.blade import Blade
-from bladegen.errors import ExportError, SizeError, ToleranceError
+from bladegen.errors import ExportError, MissingLibraryError, SizeError, ToleranceError
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.products import Products
 from bladegen.exports.registry import format_of, suffix_of
@@ -72,15 +72,18 @@ def write(products: Products, path: Path) -> None:
                 target,
             )
     suffix = suffix_of(path)
-    if row.kind is Kind.definition:
-        row.write(products, target)
-        with replacing(target) as temporary:
-            temporary.write_bytes(target.read_bytes())
-            products.mark(temporary, row.kind, suffix)
-    else:
-        with replacing(target) as temporary:
-            row.write(products, temporary)
-            products.mark(temporary, row.kind, suffix)
+    try:
+        if row.kind is Kind.definition:
+            row.write(products, target)
+            with replacing(target) as temporary:
+                temporary.write_bytes(target.read_bytes())
+                products.mark(temporary, row.kind, suffix)
+        else:
+            with replacing(target) as temporary:
+                row.write(products, temporary)
+                products.mark(temporary, row.kind, suffix)
+    except ModuleNotFoundError as error:
+        raise MissingLibraryError(error) from None
     if miss is not None:
         raise miss
     if row.kind is Kind.solid:

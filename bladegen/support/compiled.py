@@ -8,18 +8,26 @@ changes `sizes`, `section_measures` or a tolerance that they share, writes the r
 
 Arithmetic is strict: were sums free to be taken in another order, two processes that compile for
 themselves could differ in the last digit, and families with them.
+
+Where Numba is not installed (locks/core.txt) the same functions run as they are: the same numbers,
+some hundred times as slowly.
 """
 
 from collections.abc import Callable
+from importlib.util import find_spec
 from typing import Any
 
-from numba import njit
+__all__ = ["NUMBA", "compiled"]
 
-__all__ = ["compiled"]
+NUMBA = find_spec("numba") is not None
 
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Compile a function, to run without the interpreter's lock; keep the result if possible."""
+    if not NUMBA:
+        return function
+    from numba import njit
+
     options: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
     try:
         return njit(cache=True, **options)(function)

@@ -3,24 +3,33 @@
 A worker that has lost its parent belongs to another process, which the system tells at once.  A
 thread asks for it now and then, in compiled code: Python's lock may be held for many seconds by a
 solid in the making, and a thread that needs the lock to look, or to leave, would come too late.
-This module loads Numba; so import it late.
+This module loads Numba; so import it late.  Without Numba the thread looks as often as it gets
+the lock.
 """
 
+import os
 import threading
+import time
 
-from numba import types
-
-from bladegen.support.compiled import compiled
+from bladegen.support.compiled import NUMBA, compiled
 
 __all__ = ["end_with"]
 
 LOOKS = 200_000  # microseconds between two looks; sleeps of a second and more are not portable
 STATUS = 1  # of a worker that ends so
 
-# Functions of the C library, found by name; compiled code calls them without Python's lock.
-getppid = types.ExternalFunction("getppid", types.intc())
-usleep = types.ExternalFunction("usleep", types.intc(types.uintc))
-leave = types.ExternalFunction("_exit", types.void(types.intc))
+if NUMBA:  # functions of the C library; compiled code calls them without Python's lock
+    from numba import types
+
+    getppid = types.ExternalFunction("getppid", types.intc())
+    usleep = types.ExternalFunction("usleep", types.intc(types.uintc))
+    leave = types.ExternalFunction("_exit", types.void(types.intc))
+else:
+    getppid, leave = os.getppid, os._exit
+
+    def usleep(microseconds: int) -> None:
+        """Sleep."""
+        time.sleep(1e-6 * microseconds)
 
 
 @compiled

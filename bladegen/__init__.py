@@ -85,7 +85,16 @@ __all__ = [
 
 
 _MODULES = ("affine", "grassmann")
-_SERVICES = {"blade_html": "views.notebook"}  # what values offer, and the modules that do it
+_SERVICES = {  # what values offer, and the modules that do it
+    "blade_html": "views.notebook",
+    "definition_html": "views.notebook",
+    "export": "exports.exporters",
+    "family_html": "views.notebook",
+    "plot_blade": "views.preview",
+    "space_html": "views.notebook",
+    "trimesh_of": "surface.mesh_files",
+    "volume": "measures.properties",
+}
 
 
 def _finder(name: str, home: str) -> Callable[[], Any]:

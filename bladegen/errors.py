@@ -22,6 +22,7 @@ __all__ = [
     "GeometryError",
     "MissingLibraryError",
     "PerturbationError",
+    "PlaceError",
     "PromiseError",
     "RenderError",
     "SizeError",
@@ -98,6 +99,10 @@ class DesignError(BladegenError):
 
 class FamilyError(BladegenError):
     """A family of blades cannot be made, or its folder is not what it should be."""
+
+
+class PlaceError(FamilyError, IndexError):
+    """A family has no variant at a place."""
 
 
 class PerturbationError(BladegenError):

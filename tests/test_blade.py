@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
@@ -14,9 +15,12 @@ from bladegen.blade.edges import AsGiven
 from bladegen.blade.planform import normal_to_z
 from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import DefinitionError
+from bladegen.exports.exporters import export
 from bladegen.formats.reading import bundled, read
+from bladegen.measures.properties import volume
 from bladegen.shapes import affine
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.surface.tips import round_tip
 from strategies import SEEDS, definitions, few
 
 N = 101
@@ -242,3 +246,32 @@ def test_pickles_hold_no_caches():
     assert not {"splines", "parameter", "_joined", "_widths"} & set(
         vars(pickle.loads(before).shape.loft)
     )
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_points_lie_where_sections_have_them(mirrored):
+    blade = Blade.from_definition(read("nrel5mw"), landmarks=N)
+    blade = blade.mirror_image() if mirrored else blade
+    eta = np.array([0.9, 0.2, 0.5])
+    assert_allclose(blade.point(eta[:, None], blade.u), blade.sections(eta), atol=1e-9)
+    assert blade.point(0.5, 0.25).shape == (3,)
+    assert blade.point(eta, [0.1, 0.7, 0.7]).shape == (3, 3)
+    pairs = blade.point(eta, [0.1, 0.7, 0.5])
+    assert_allclose(pairs[1], blade.point(0.2, 0.7), atol=1e-9)
+    for wrong in ({"eta": 1.1, "u": 0.5}, {"eta": 0.5, "u": -0.1}, {"eta": 0.5, "u": "nose"}):
+        with pytest.raises(DefinitionError):
+            blade.point(**wrong)
+
+
+def test_a_blade_meshes_writes_and_measures_itself(tmp_path):
+    blade = Blade.from_definition(read("nrel5mw"), landmarks=N)
+    made = blade.mesh(stations=150)
+    assert isinstance(made, trimesh.Trimesh)
+    assert made.is_watertight
+    assert_allclose(made.volume, blade.volume, rtol=3e-3)
+    assert_allclose(made.bounds[1, 2], blade.axis(1.0)[2], atol=0.1)
+    assert blade.volume == volume(blade)
+    assert len(blade.mesh(stations=20, tip=round_tip).faces) > len(blade.mesh(stations=20).faces)
+    assert blade.export(tmp_path / "a.stl", stations=20, unit="mm") == tmp_path / "a.stl"
+    export(blade, tmp_path / "b.stl", stations=20, unit="mm")
+    assert (tmp_path / "a.stl").read_bytes() == (tmp_path / "b.stl").read_bytes()

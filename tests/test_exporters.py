@@ -1,3 +1,6 @@
+import inspect
+from dataclasses import fields
+
 import numpy as np
 import pytest
 import pyvista
@@ -175,3 +178,12 @@ def test_a_solid_larger_than_allowed_is_kept_aside(blade, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.too-large.step"]
     exporters.write(products, tmp_path / "a.stl")  # the promise is about solids
     assert (tmp_path / "a.stl").stat().st_size > 9000
+
+
+def test_the_options_of_export_are_named_and_their_defaults_those_of_options():
+    given = inspect.signature(bg.export).parameters
+    for entry in fields(exporters.Options):
+        assert entry.name in given
+        assert f"    {entry.name}" in bg.export.__doc__
+        if entry.name != "spacing":
+            assert given[entry.name].default == entry.default

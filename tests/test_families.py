@@ -6,7 +6,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen.errors import BladegenError
+from bladegen.errors import BladegenError, FamilyError
 from bladegen.variants.designs import tabulated
 
 SPACE = bg.ShapeSpace.bundled()
@@ -114,3 +114,32 @@ def test_a_smooth_space_serves_other_landmarks():
 def test_a_variant_beyond_the_family_is_refused():
     with pytest.raises(BladegenError, match="allowed is 0 to 1"):
         bg.family(blade(), SPACE, count=2).variant(2)
+
+
+def test_a_family_is_a_sequence_of_what_iterating_gives():
+    family = bg.family(blade(), SPACE, count=5, seed=3, spans=40, bounds={"twist": (-0.1, 0.1)})
+    variants = list(family)
+    assert [one.name for one in family[1:4]] == [one.name for one in variants[1:4]]
+    for place in (0, 3, -1, np.int64(2)):
+        assert_array_equal(family[place].sections([0.7]), variants[place].sections([0.7]))
+    assert family[-1].name == "nrel5mw-00004"
+    for place in (5, -6):
+        with pytest.raises(IndexError, match="allowed is 0 to 4"):
+            family[place]
+        with pytest.raises(FamilyError):
+            family[place]
+    with pytest.raises(FamilyError, match="must be a whole number"):
+        family["first"]
+    assert family[7:] == []
+
+
+def test_a_familys_table_holds_what_its_blocks_do():
+    family = bg.family(blade(), SPACE, count=70, seed=3, spans=40, bounds={"twist": (-0.1, 0.1)})
+    table, block = family.table(), family.block(np.arange(70))
+    assert table.column_names[:5] == ["index", "name", "valid", "reason", "attempts"]
+    assert tuple(table.column_names[5:]) == family.design.what.names
+    values = np.stack([table[name].to_numpy() for name in family.design.what.names], axis=-1)
+    assert_array_equal(values, block.values)
+    assert_array_equal(table["attempts"].to_numpy(), block.attempts)
+    assert table["reason"].to_pylist() == list(block.reasons)
+    assert table["name"].to_pylist()[69] == family.name(69)

@@ -40,6 +40,32 @@ def test_names_are_escaped_and_changes_named(blade):
     assert "thickness 1.1" in shown
 
 
+def test_definitions_spaces_and_families_show_tables(blade):
+    space = bg.ShapeSpace.bundled()
+    definition = replace(blade.definition, description="<i>")
+    for value, words in (
+        (definition, ("117.00 m", "FFA-W3-211", "&lt;i&gt;", "windIO 2")),
+        (space, ("401", "t4", "rad")),
+        (replace(space, coordinates=np.zeros((0, 4))), ("t4", "%")),
+        (bg.family(blade, space, count=3), ("iea15mw", "ellipsoid", "t1", "redraw")),
+    ):
+        data, _ = DisplayFormatter().format(value)
+        assert len(data["text/plain"]) < 200
+        assert data["text/html"].startswith("<table>")
+        assert "<i>" not in data["text/html"]
+        assert all(word in data["text/html"] for word in words)
+
+
+def test_plot_shows_a_picture_in_a_notebook(blade, monkeypatch):
+    shown = []
+    kernel = type("Shell", (), {"kernel": object()})()
+    monkeypatch.setattr("IPython.get_ipython", lambda: kernel)
+    monkeypatch.setattr("IPython.display.display", shown.append)
+    blade.plot()
+    image = Image.open(io.BytesIO(shown[0].data))
+    assert image.size[0] > 500
+
+
 def test_a_plain_blade_loads_nothing_that_draws():
     code = (
         "import sys, bladegen as bg;"

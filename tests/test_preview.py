@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 import bladegen as bg
-from bladegen.errors import RenderError
+from bladegen.errors import ExportError, RenderError
 from bladegen.views import preview
 from bladegen.views.picture import _round_step
 
@@ -26,6 +26,21 @@ def test_a_picture_shows_the_blade(blade, tmp_path):
         assert not background[top:bottom].all()
     station = np.array([0xD5, 0x5E, 0x00])
     assert np.count_nonzero(np.abs(image - station).max(axis=2) < 40) > 50
+
+
+def test_a_blade_plots_itself_to_a_file_or_a_window(blade, tmp_path, monkeypatch):
+    assert blade.plot(screenshot=tmp_path / "a.png") is None
+    preview.picture(blade, tmp_path / "b.png")
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    with pytest.raises(ExportError, match=r"screenshot: .*allowed are \.png"):
+        blade.plot(screenshot=tmp_path / "a.jpg")
+    asked = []
+    monkeypatch.setattr(
+        "bladegen.views.preview.show", lambda scene, colour: asked.append((scene.title, colour))
+    )
+    blade.plot(colour="curvature")
+    assert len(asked) == 1
+    assert asked[0][1] == "curvature"
 
 
 def test_without_libraries_one_line_names_the_packages(blade, tmp_path, monkeypatch):

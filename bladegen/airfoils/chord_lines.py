@@ -13,6 +13,7 @@ import numpy as np
 from bladegen.airfoils.curves import SectionCurves
 from bladegen.errors import PerturbationError
 from bladegen.support.arrays import Array, Mask
+from bladegen.support.values import brief
 
 __all__ = ["CONVENTIONS", "KEPT", "PAPER", "ChordLines", "Motions", "angles", "known_convention"]
 
@@ -43,6 +44,8 @@ class Motions:
     R: Array
     s: Array
 
+    __repr__ = brief
+
     @classmethod
     def none(cls, count: int) -> "Motions":
         """Return motions that move nothing."""
@@ -64,6 +67,8 @@ class ChordLines:
     nose: Array
     edge: Array
     alone: Mask
+
+    __repr__ = brief
 
     @classmethod
     def of(cls, curves: SectionCurves) -> "ChordLines":

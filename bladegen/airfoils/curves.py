@@ -18,6 +18,7 @@ from bladegen.airfoils.resizing import RIVAL, resizing, stretching
 from bladegen.airfoils.roots import ITERATIONS, bracketed, falling
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, Mask, mapped
+from bladegen.support.values import brief
 
 __all__ = ["SectionCurves"]
 
@@ -34,6 +35,8 @@ class SectionCurves:
     u: Array
     points: Array
     slopes: Array
+
+    __repr__ = brief
 
     def normalising(self, relative_thickness: Array | None) -> tuple[Array, Array]:
         """Return the maps of `SectionSplines.normalising`."""

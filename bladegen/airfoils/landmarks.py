@@ -18,6 +18,7 @@ from bladegen.airfoils.fairing import fair
 from bladegen.errors import GeometryError
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array, readonly
+from bladegen.support.values import brief
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
@@ -111,6 +112,8 @@ class Contour:
     leading_edge: float
     opened: float = 0.0
     moved: float = 0.0
+
+    __repr__ = brief
 
     def landmarks(self, parameters: Array) -> Array:
         """Return the points (n, 2) at the given fractions of each side's arc length.

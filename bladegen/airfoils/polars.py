@@ -12,6 +12,7 @@ import numpy as np
 
 from bladegen.errors import DefinitionError
 from bladegen.support.arrays import Array, readonly
+from bladegen.support.values import brief, equal, hashed
 
 __all__ = ["BORROWED", "ESTIMATED", "Polar", "blended"]
 
@@ -21,7 +22,7 @@ FEWEST = 2
 FIGURES = ("alpha", "cl", "cd", "cm")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Polar:
     """The coefficients of an airfoil at one Reynolds number.
 
@@ -63,6 +64,10 @@ class Polar:
             object.__setattr__(self, name, values)
         if not np.all(np.diff(self.alpha) > 0):
             raise DefinitionError("polar: alpha must increase strictly")
+
+    __eq__ = equal
+    __hash__ = hashed
+    __repr__ = brief
 
     @property
     def is_borrowed(self) -> bool:

@@ -7,6 +7,7 @@ import numpy as np
 
 from bladegen.airfoils.curves import SectionCurves
 from bladegen.support.arrays import Array, readonly
+from bladegen.support.values import brief
 
 __all__ = ["SectionSplines"]
 
@@ -37,6 +38,8 @@ class SectionSplines:
     """
 
     u: Array
+
+    __repr__ = brief
 
     @cached_property
     def _slopes(self) -> Array:

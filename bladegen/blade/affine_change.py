@@ -127,7 +127,7 @@ class AffineChange:
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Faded:
     """A distribution times a factor, plus a shift, both faded in by a window."""
 

@@ -14,7 +14,7 @@ import numpy as np
 from bladegen.airfoils.chord_lines import KEPT
 from bladegen.airfoils.fairing import TOLERANCE
 from bladegen.airfoils.landmarks import Spacing, clustered
-from bladegen.blade import parts
+from bladegen.blade import outputs, parts
 from bladegen.blade.crowding import Crowding
 from bladegen.blade.deformation import AffineChange, Coordinates, Window
 from bladegen.blade.edges import MINIMUM_EDGE, TrailingEdge
@@ -26,11 +26,10 @@ from bladegen.blade.shape import Shape
 from bladegen.blade.soundness import Trial, leaving
 from bladegen.blade.spans import span_fractions
 from bladegen.definition.blade_definition import BladeDefinition
-from bladegen.errors import DefinitionError, Finding
+from bladegen.errors import DefinitionError, Finding, visible
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import function, whole
 from bladegen.support.arrays import Array, ArrayLike, readonly
-from bladegen.support.services import service
 from bladegen.support.values import state_of
 
 __all__ = ["PATHS", "Blade"]
@@ -95,14 +94,12 @@ class Blade:
 
     def __repr__(self) -> str:
         return (
-            f"<Blade {self.name}: {self.length:.1f} m, {len(self.eta)} stations, "
+            f"<Blade {visible(self.name)}: {self.length:.1f} m, {len(self.eta)} stations, "
             f"{len(self.u)} landmarks{''.join(map(told, self.changes))}>"
         )
 
-    def _repr_html_(self) -> str:
-        """Return table and picture for notebooks."""
-        shown: str = service("blade_html")(self)
-        return shown
+    plot, mesh, export, point = outputs.plot, outputs.mesh, outputs.export, outputs.point
+    volume, _repr_html_ = cached_property(outputs.volume), outputs.html
 
     @classmethod
     def from_definition(
@@ -134,10 +131,8 @@ class Blade:
             Largest distance of an airfoil's given points to its curve [chord], within which
             noise of their digits is taken out; None keeps the points.
 
-        Raises
-        ------
-        DefinitionError, GeometryError
-            If an argument is of another kind; if an airfoil is unusable.
+        A `DefinitionError` says which argument is of another kind, a `GeometryError` which
+        airfoil is unusable.
         """
         must = "such as bladegen.blade.edges.MinimumThickness(0.002)"
         function(trailing_edge, "trailing_edge", must, DefinitionError)
@@ -189,8 +184,8 @@ class Blade:
     def sections(self, eta: ArrayLike, u: Array | None = None) -> Array:
         """Return sections (..., n, 3) [m] at span fractions `eta` (...), blade frame.
 
-        Trailing edges are finished.  Landmarks run trailing edge -> suction -> leading edge ->
-        pressure, of a mirror image pressure before suction, so that they go round the same way.
+        Trailing edges are finished; landmarks run from there along the first of `sides` to the
+        leading edge and back along the second, round the same way in a mirror image.
         `u` (m,) are others, as for `profiles`, 0 and 1 among them.
         """
         spans = span_fractions(eta)
@@ -299,10 +294,7 @@ class Blade:
         )
 
     def require_sound(self, *, allow_odd: bool = False) -> "Blade":
-        """Return the blade, or raise if a section crosses itself, has lost its thickness or is odd.
-
-        A `PerturbationError` says which; where odd ones are allowed, findings do.
-        """
+        """Return the blade if its sections are sound; findings say which are odd, if allowed."""
         asked = self.changes[-1] if self.changes else {}
         found = Trial(self.shape, self.definition, asked).findings(allow_odd=allow_odd)
         return replace(self, findings=self.findings + found) if found else self

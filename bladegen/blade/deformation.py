@@ -21,6 +21,7 @@ from bladegen.shapes.domain import BEYOND
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import numbers, shown
 from bladegen.support.arrays import Array, ArrayLike, readonly
+from bladegen.support.values import brief, equal, hashed
 
 __all__ = [
     "RANGES",
@@ -35,7 +36,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Coordinates:
     """Normal coordinates over span: the same everywhere, or monotone between knots.
 
@@ -68,6 +69,15 @@ class Coordinates:
         object.__setattr__(self, "grid", grid)
         object.__setattr__(self, "values", values)
 
+    __eq__ = equal
+    __hash__ = hashed
+
+    def __repr__(self) -> str:
+        if len(self.grid) == 1:
+            return f"<Coordinates t = {', '.join(f'{one:.4g}' for one in self.values[0])}>"
+        spans = f"{len(self.grid)} spans from eta = {self.grid[0]:.3g} to {self.grid[-1]:.3g}"
+        return f"<Coordinates of {self.values.shape[1]} modes at {spans}>"
+
     @classmethod
     def constant(cls, t: ArrayLike) -> "Coordinates":
         """The same coordinates (r,) everywhere."""
@@ -87,7 +97,7 @@ class Coordinates:
         return np.stack(columns, axis=-1)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, repr=False)
 class Deformation:
     """A consistent deformation of shapes.
 
@@ -108,6 +118,8 @@ class Deformation:
     t: Coordinates
     window: Window
     chord_line: str = KEPT
+
+    __repr__ = brief
 
     def __call__(self, X: Array, eta: Array) -> Array:
         """Return deformed shapes (k, n, 2) of shapes X at span fractions (k,), bases joined."""

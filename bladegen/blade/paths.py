@@ -17,6 +17,7 @@ import numpy as np
 from bladegen.definition.blade_definition import Distribution, Interpolant, pchip
 from bladegen.shapes import affine, grassmann
 from bladegen.support.arrays import Array, Mask
+from bladegen.support.values import brief
 
 __all__ = ["PATHS", "GeodesicPath", "Parameter", "Path", "SectionSpline", "SplinePath"]
 
@@ -41,6 +42,8 @@ class Parameter:
 
     stations: Array
     relative_thickness: Distribution | None = None
+
+    __repr__ = brief
 
     @cached_property
     def _ends(self) -> tuple[Array, Mask]:
@@ -102,6 +105,8 @@ class GeodesicPath:
     knots: Array
     X: Array
 
+    __repr__ = brief
+
     @cached_property
     def _steps(self) -> Array:
         return grassmann.log(self.X[:-1], self.X[1:])
@@ -150,6 +155,8 @@ class SplinePath:
     X: Array
     mean: Array
 
+    __repr__ = brief
+
     @cached_property
     def _logs(self) -> Interpolant:
         from scipy.interpolate import CubicHermiteSpline
@@ -184,6 +191,8 @@ class SectionSpline:
     knots: Array
     M: Array
     b: Array
+
+    __repr__ = brief
 
     @cached_property
     def _parts(self) -> tuple[Interpolant, Interpolant, Interpolant]:

@@ -23,7 +23,7 @@ from bladegen.definition.blade_definition import BladeDefinition, ReferenceAxis
 from bladegen.errors import DefinitionError
 from bladegen.support.arguments import function
 from bladegen.support.arrays import Array
-from bladegen.support.values import state_of
+from bladegen.support.values import brief, state_of
 
 __all__ = ["Frames", "Planform", "SectionPlanes", "normal_to_axis", "normal_to_z", "placement"]
 
@@ -103,6 +103,8 @@ class AxisFrames:
 
     axis: ReferenceAxis
     planes: SectionPlanes
+
+    __repr__ = brief
 
     __getstate__ = state_of
 

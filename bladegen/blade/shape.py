@@ -46,7 +46,7 @@ class Shape:
     def profiles(self, eta: ArrayLike, u: Array | None = None) -> Array:
         """Return unit-chord sections (..., n, 2): see `Blade.profiles`."""
         spans = span_fractions(eta)
-        u = u if u is None else landmarks_at(u)
+        u = u if u is None else landmarks_at(u, 1)
         flat, loft = spans.reshape(-1), self.loft
         path = loft.at(flat)
         opening = loft.opening(flat, *path)

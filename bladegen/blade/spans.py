@@ -4,9 +4,9 @@ import numpy as np
 
 from bladegen.errors import DefinitionError
 from bladegen.support.arguments import numbers
-from bladegen.support.arrays import Array, ArrayLike
+from bladegen.support.arrays import Array, ArrayLike, Indices
 
-__all__ = ["landmarks_at", "span_fractions"]
+__all__ = ["both_sides", "landmarks_at", "span_fractions"]
 
 
 def span_fractions(eta: ArrayLike) -> Array:
@@ -18,9 +18,22 @@ def span_fractions(eta: ArrayLike) -> Array:
     return spans
 
 
-def landmarks_at(u: ArrayLike) -> Array:
-    """Return landmark parameters as an array, or say that they are none."""
+def landmarks_at(u: ArrayLike, dimensions: int | None = None) -> Array:
+    """Return landmark parameters as an array, of so many dimensions, or say that they are none."""
     values = numbers(u, "u", DefinitionError, "landmark parameters from 0 to 1")
-    if values.ndim != 1 or not bool(np.all((values >= 0) & (values <= 1))):
-        raise DefinitionError("u: must be a list of landmark parameters from 0 to 1")
+    inside = bool(np.all((values >= 0) & (values <= 1)))
+    if not inside or dimensions not in (None, values.ndim):
+        listed = "a list of " if dimensions else ""
+        raise DefinitionError(f"u: must be {listed}landmark parameters from 0 to 1")
     return values
+
+
+def both_sides(u: Array) -> tuple[Array, Indices]:
+    """Return parameters (m,) that hold `u` (...), the ends and 0.5, and where each stands.
+
+    They are symmetric about 0.5, as those of sections whose trailing edges are finished must be.
+    """
+    side = np.unique(np.concatenate([[0.0, 0.5], np.minimum(u, 1.0 - u).reshape(-1)]))
+    at = np.searchsorted(side, np.minimum(u, 1.0 - u))
+    both = np.concatenate([side, 1.0 - side[-2::-1]])
+    return both, np.where(u <= 0.5, at, len(both) - 1 - at)

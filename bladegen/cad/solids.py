@@ -15,7 +15,7 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.cad.shapes import MILLIMETRES, area, is_valid
-from bladegen.errors import CadError
+from bladegen.errors import CadError, visible
 from bladegen.support.arrays import Array
 from bladegen.surface.deviation import Deviation
 from bladegen.surface.ends import edge_poles, measured, rounded, tip_volume
@@ -56,6 +56,10 @@ class Solid:
     deviation: Deviation
     tip_volume: float
     name: str
+
+    def __repr__(self) -> str:
+        off = 1e3 * self.deviation.maximum
+        return f"<Solid {visible(self.name)}: {len(self.faces)} faces, {off:.3g} mm off the blade>"
 
     @property
     def volume(self) -> float:

@@ -12,9 +12,11 @@ import numpy as np
 
 from bladegen.airfoils.polars import Polar
 from bladegen.definition.distribution import SMALLEST_STEP, Distribution, Interpolant, pchip, united
-from bladegen.errors import DefinitionError, Finding
+from bladegen.errors import DefinitionError, Finding, visible
 from bladegen.support.arguments import amount, instance, numbers, shown
 from bladegen.support.arrays import Array, ArrayLike, readonly
+from bladegen.support.services import shown_by
+from bladegen.support.values import brief, equal, hashed
 
 __all__ = [
     "SMALLEST_RISE",
@@ -47,7 +49,7 @@ QUANTITIES = (
 MAX_AIRFOIL_POINTS = 5_000  # far above any published airfoil (399); bounds time and memory
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Airfoil:
     """A closed or open airfoil contour, as its file gives it.
 
@@ -93,8 +95,17 @@ class Airfoil:
             )
         object.__setattr__(self, "coordinates", points)
 
+    __eq__ = equal
+    __hash__ = hashed
 
-@dataclass(frozen=True)
+    def __repr__(self) -> str:
+        thick = self.relative_thickness
+        said = "" if thick is None else f", {100.0 * thick:.4g} % thick"
+        polars = f", {len(self.polars)} polars" if self.polars else ""
+        return f"<Airfoil {visible(self.name)}: {len(self.coordinates)} points{said}{polars}>"
+
+
+@dataclass(frozen=True, repr=False)
 class Station:
     """An airfoil at a span fraction."""
 
@@ -106,8 +117,11 @@ class Station:
             raise DefinitionError(f"station: eta: got {shown(self.eta)}, must be a span fraction")
         instance(self.airfoil, Airfoil, "station: airfoil", "a bladegen.Airfoil", DefinitionError)
 
+    def __repr__(self) -> str:
+        return f"<Station at eta = {self.eta:.4g}: {self.airfoil!r}>"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class ReferenceAxis:
     """The curve that carries the sections: x, y, z over span [m], blade frame."""
 
@@ -119,12 +133,16 @@ class ReferenceAxis:
         for name in ("x", "y", "z"):
             instance(getattr(self, name), Distribution, f"axis: {name}", OVER_SPAN, DefinitionError)
 
+    def __repr__(self) -> str:
+        x, y, z = self(1.0) - self(0.0)
+        return f"<ReferenceAxis: {z:.4g} m long, tip at x = {x:.4g} m, y = {y:.4g} m from the root>"
+
     def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
         """Return points, or `nu`-th derivatives, of shape (..., 3) at `eta`."""
         return np.stack([self.x(eta, nu), self.y(eta, nu), self.z(eta, nu)], axis=-1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Rotor:
     """What a file says of the rotor around the blade; nothing here shapes the blade."""
 
@@ -140,8 +158,10 @@ class Rotor:
             if value is not None:
                 amount(value, f"rotor: {name}", DefinitionError)
 
+    __repr__ = brief
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class BladeDefinition:
     """A blade as its designer defines it: airfoils at stations, distributions over span.
 
@@ -190,6 +210,7 @@ class BladeDefinition:
 
     def __post_init__(self) -> None:
         self._require_kinds()
+        object.__setattr__(self, "stations", tuple(self.stations))
         etas = [station.eta for station in self.stations]
         if len(etas) < 2:
             raise DefinitionError(f"{self.name}: {len(etas)} stations, at least 2 are needed")
@@ -215,6 +236,16 @@ class BladeDefinition:
                 f"{z.values[i]:g} then {z.values[i + 1]:g} m at eta = {z.grid[i]:g} and "
                 f"{z.grid[i + 1]:g}"
             )
+
+    def __repr__(self) -> str:
+        airfoils = {station.airfoil.name for station in self.stations}
+        source = f", {visible(self.format)}" if self.format else ""
+        return (
+            f"<BladeDefinition {visible(self.name)}: {self.length:.1f} m, {len(self.stations)} "
+            f"stations, {len(airfoils)} airfoils{source}>"
+        )
+
+    _repr_html_ = shown_by("definition_html")
 
     def _require_kinds(self) -> None:
         instance(self.name, str, "name", "a text", DefinitionError)

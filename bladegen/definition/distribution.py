@@ -10,6 +10,7 @@ import numpy as np
 from bladegen.errors import DefinitionError
 from bladegen.support.arguments import amount, function, numbers
 from bladegen.support.arrays import Array, ArrayLike, readonly
+from bladegen.support.values import equal, hashed
 
 __all__ = ["SMALLEST_STEP", "Distribution", "Interpolant", "pchip", "united"]
 
@@ -34,7 +35,7 @@ def pchip(grid: Array, values: Array) -> Interpolant:
     return interpolant
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Distribution:
     """A quantity over span: values on a grid of its own, and the spline through them.
 
@@ -88,6 +89,17 @@ class Distribution:
             )
         object.__setattr__(self, "grid", grid)
         object.__setattr__(self, "values", values)
+
+    __eq__ = equal
+    __hash__ = hashed
+
+    def __repr__(self) -> str:
+        values = self.values
+        ends = (
+            f"{values[0]:.4g} at eta = {self.grid[0]:.3g}, {values[-1]:.4g} at {self.grid[-1]:.3g}"
+        )
+        least, most = f"{values.min():.4g}", f"{values.max():.4g}"
+        return f"<Distribution of {len(values)} points: {ends}, {least} to {most}>"
 
     @classmethod
     def constant(cls, value: float) -> "Distribution":

@@ -13,12 +13,33 @@ from bladegen.exports.options import Kind, Options
 from bladegen.exports.products import Products
 from bladegen.exports.registry import format_of, suffix_of
 from bladegen.support.arguments import instance, path_of
+from bladegen.support.arrays import Array
 from bladegen.support.files import replacing
+from bladegen.surface import grid
+from bladegen.surface.tips import Tip, flat_tip
 
 __all__ = ["aside", "export", "require_size", "write"]
 
 
-def export(blade: Blade, path: str | Path, **options: Any) -> Path:
+def export(
+    blade: Blade,
+    path: str | Path,
+    *,
+    tolerance: float = Options.tolerance,
+    sections: int | None = None,
+    stations: int = Options.stations,
+    tip: Tip = flat_tip,
+    unit: str = Options.unit,
+    step_schema: str = Options.step_schema,
+    timestamp: str | None = None,
+    largest: int | None = None,
+    spans: Array | None = None,
+    spacing: grid.Spacing | None = None,
+    polars: str | None = None,
+    reynolds: float | None = None,
+    command: str = "",
+    **others: Any,
+) -> Path:
     """Write a blade to a file in the format of its suffix.
 
     Parameters
@@ -27,8 +48,35 @@ def export(blade: Blade, path: str | Path, **options: Any) -> Path:
         What to write.
     path : str or Path
         Where to; an existing file is replaced once the new one is whole.
-    **options
-        Fields of `Options`.
+    tolerance : float
+        Solids: largest distance to the blade's sections [m], 1e-6 to 0.05.
+    sections : int, optional
+        Solids: exactly so many sections instead of as many as the tolerance needs.
+    stations : int
+        Meshes and tables of sections: how many sections.
+    tip : callable
+        Solids, meshes and grids: `bladegen.surface.tips.flat_tip` or `round_tip`.
+    unit : str
+        STL, PLY, OBJ, VTP, PLOT3D and VTU: "m" or "mm".  STEP, IGES, BREP and 3MF are always in
+        millimetres, GLB and CGNS in metres.
+    step_schema : str
+        STEP: "ap242" or "ap214".
+    timestamp : str, optional
+        STEP and IGES: the time in the header, ISO 8601, instead of now.
+    largest : int, optional
+        Solids: the most bytes that a file may take.
+    spans : (k,) array, optional
+        Solids: span fractions of sections to begin with, such as those of a blade that is alike.
+    spacing : bladegen.surface.grid.Spacing, optional
+        Grids: how many points, and cell sizes as fractions of a side and of the axis.
+    polars : str, optional
+        Definitions: where polars are from, as for `bladegen.write`.
+    reynolds : float, optional
+        Definitions: the Reynolds number of estimated polars.
+    command : str
+        What was typed, for the file to say.
+    **others
+        None: another name is an `ExportError` that tells which is meant.
 
     Returns
     -------
@@ -43,12 +91,27 @@ def export(blade: Blade, path: str | Path, **options: Any) -> Path:
     CadError
         If the solid is not valid; `ToleranceError` if it misses its tolerance, with the file
         kept beside the target as ``<name>.out-of-tolerance.step``; `SizeError` if it is larger
-        than `Options.largest`, kept as ``<name>.too-large.step``.
+        than `largest`, kept as ``<name>.too-large.step``.
     """
     must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
     instance(blade, Blade, "blade", must, ExportError)
     path = path_of(path, "path", ExportError)
-    write(Products(blade, Options.named(options)), path)
+    given: dict[str, Any] = {
+        "tolerance": tolerance,
+        "sections": sections,
+        "stations": stations,
+        "tip": tip,
+        "unit": unit,
+        "step_schema": step_schema,
+        "timestamp": timestamp,
+        "largest": largest,
+        "spans": spans,
+        "spacing": grid.Spacing() if spacing is None else spacing,
+        "polars": polars,
+        "reynolds": reynolds,
+        "command": command,
+    }
+    write(Products(blade, Options.named(given | others)), path)
     return path
 
 

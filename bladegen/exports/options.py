@@ -10,6 +10,7 @@ from bladegen.errors import ExportError
 from bladegen.exports.provenance import word
 from bladegen.support.arguments import amount, function, instance, one_of, suggestion, whole
 from bladegen.support.arrays import Array
+from bladegen.support.values import brief
 from bladegen.surface import grid, mesh
 from bladegen.surface.tips import Tip, flat_tip
 
@@ -94,6 +95,8 @@ class Options:
         function(self.tip, "tip", "bladegen.surface.tips.flat_tip or round_tip", ExportError)
         must = "a bladegen.surface.grid.Spacing"
         instance(self.spacing, grid.Spacing, "spacing", must, ExportError)
+
+    __repr__ = brief
 
     def settings(self, kind: Kind, suffix: str) -> dict[str, str]:
         """Return the options that matter to a file of a kind and suffix, in words."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.support.arrays import Array, Indices, Mask
+from bladegen.support.values import brief
 from bladegen.variants.batch import Batch
 
 __all__ = ["Block"]
@@ -36,6 +37,8 @@ class Block:
     reasons: tuple[str, ...]
     refused: tuple[str, ...]
     batch: Batch
+
+    __repr__ = brief
 
     @property
     def valid(self) -> Mask:

@@ -7,7 +7,7 @@ limit, or kept and marked.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -16,13 +16,15 @@ import numpy as np
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.blade import Blade
 from bladegen.blade.deformation import RANGES, Window
-from bladegen.errors import FamilyError
+from bladegen.errors import FamilyError, PlaceError
+from bladegen.families import members
 from bladegen.families.block import Block
 from bladegen.families.rules import Rules
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import instance, one_of, whole
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import safe_stem
+from bladegen.support.values import state_of
 from bladegen.variants.batch import SectionBatch
 from bladegen.variants.designs import Design
 from bladegen.variants.draws import Seed
@@ -96,11 +98,12 @@ class Family:
             f"{self.design.seed}, of {', '.join(self.design.what.names)}>"
         )
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {entry.name: getattr(self, entry.name) for entry in fields(self)}
+    __getstate__ = state_of
 
     def __len__(self) -> int:
         return len(self.design)
+
+    __getitem__, table, _repr_html_ = members.member, members.table, members.html
 
     def __iter__(self) -> Iterator[Blade]:
         for first in range(0, len(self), BLOCK):
@@ -157,7 +160,7 @@ class Family:
         """Return one variant as a blade, whether it is sound or not."""
         place = whole(place, "variant", FamilyError)
         if not 0 <= place < len(self):
-            raise FamilyError(f"variant: got {place}, allowed is 0 to {len(self) - 1}")
+            raise PlaceError(f"variant: got {place}, allowed is 0 to {len(self) - 1}")
         return self._blade(place, self._drawn(np.array([place]))[0])
 
     def name(self, place: int) -> str:
@@ -180,8 +183,12 @@ class Family:
 
     def _drawn(self, index: Indices) -> Array:
         """Return the values (b, d) of variants, after all redrawing."""
+        return self.settled(index)[0]
+
+    def settled(self, index: Indices) -> tuple[Array, Indices, list[str]]:
+        """Return values (b, d) of variants after all redrawing, numbers of draws, what is wrong."""
         values = self.design.at(index)
-        return self._redrawn(index, values, self._rules.tested(values))[0]
+        return self._redrawn(index, values, self._rules.tested(values))
 
     def _redrawn(
         self, index: Indices, values: Array, reasons: list[str]

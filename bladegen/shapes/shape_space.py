@@ -21,6 +21,8 @@ from bladegen.support.archive import load_arrays, save_arrays
 from bladegen.support.arguments import instance, numbers, path_of, whole
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.files import require_suffix
+from bladegen.support.services import shown_by
+from bladegen.support.values import equal, hashed
 
 __all__ = ["ShapeSpace"]
 
@@ -60,6 +62,10 @@ class ShapeSpace:
         for name in ARRAYS:
             values = numbers(getattr(self, name), name, SpaceError)
             object.__setattr__(self, name, readonly(values))
+
+    __eq__ = equal
+    __hash__ = hashed
+    _repr_html_ = shown_by("space_html")
 
     def __repr__(self) -> str:
         return (
@@ -234,19 +240,9 @@ class ShapeSpace:
         return grassmann.exp(self.mean, self.tangent(t))
 
     def carried(self, t: Array, points: Array) -> Array:
-        """Carry tangents at the mean to shapes, by parallel transport.
+        """Carry tangents at the mean, of coordinates t (k, r), to shapes `points` (k, n, 2).
 
-        Parameters
-        ----------
-        t : (k, r) array
-            Coordinates of the tangents.
-        points : (k, n, 2) array
-            Where to.
-
-        Returns
-        -------
-        (k, n, 2) array
-            Tangent vectors at the bases `points`, inner products kept.
+        By parallel transport: tangent vectors (k, n, 2) there, inner products kept.
         """
         return grassmann.transport(self.tangent(t), self.mean[None], points)
 

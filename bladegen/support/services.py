@@ -8,7 +8,7 @@ above all rooms, registers what does it.
 from collections.abc import Callable
 from typing import Any
 
-__all__ = ["provide", "service"]
+__all__ = ["provide", "service", "shown_by"]
 
 _SERVICES: dict[str, Callable[[], Callable[..., Any]]] = {}
 
@@ -29,3 +29,13 @@ def provide(name: str, find: Callable[[], Callable[..., Any]]) -> None:
 def service(name: str) -> Callable[..., Any]:
     """Return the service of a name."""
     return _SERVICES[name]()
+
+
+def shown_by(name: str) -> Callable[[Any], str]:
+    """Return a method `_repr_html_`, for notebooks, that a service does."""
+
+    def html(value: Any) -> str:
+        shown: str = service(name)(value)
+        return shown
+
+    return html

@@ -11,8 +11,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.errors import GeometryError
+from bladegen.errors import GeometryError, visible
 from bladegen.support.arrays import Array, readonly
+from bladegen.support.values import brief
 from bladegen.surface.caps import Cap, cap, divisions
 from bladegen.surface.net import CLOSED_EDGE
 from bladegen.surface.stretching import MINIMUM_CELLS, two_sided
@@ -108,6 +109,8 @@ class Block:
     eta: Array
     u: Array
 
+    __repr__ = brief
+
     def __post_init__(self) -> None:
         for name in ("points", "eta", "u"):
             object.__setattr__(self, name, readonly(getattr(self, name)))
@@ -148,6 +151,10 @@ class Grid:
     blocks: tuple[Block, ...]
     interfaces: tuple[Interface, ...]
     spacing: Spacing = field(default_factory=Spacing)
+
+    def __repr__(self) -> str:
+        points = sum(block.eta.size for block in self.blocks)
+        return f"<Grid {visible(self.name)}: {len(self.blocks)} blocks, {points} points>"
 
     def along(self, interface: Interface) -> tuple[Array, Array]:
         """Return the points (m, 3) of both edges of an interface."""

@@ -48,6 +48,9 @@ class TriangleMesh:
         faces.flags.writeable = False
         object.__setattr__(self, "faces", faces)
 
+    def __repr__(self) -> str:
+        return f"<TriangleMesh of {len(self.faces)} triangles, {len(self.vertices)} vertices>"
+
     @property
     def area(self) -> float:
         """Surface area [m2]."""

@@ -14,11 +14,13 @@ from typing import Any
 
 import numpy as np
 
+from bladegen.blade.blade import Blade
 from bladegen.errors import FileError
 from bladegen.support.arrays import Array, Indices
-from bladegen.surface.mesh import TriangleMesh
+from bladegen.surface.mesh import SECTIONS, TriangleMesh, from_blade
+from bladegen.surface.tips import Tip, flat_tip
 
-__all__ = ["assembled", "read", "sound", "to_trimesh", "with_steady_ids"]
+__all__ = ["assembled", "read", "sound", "to_trimesh", "trimesh_of", "with_steady_ids"]
 
 FARTHEST = 1e9  # of a vertex of a file, in its unit: products of three lengths stay finite
 
@@ -30,6 +32,11 @@ def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
     return trimesh.Trimesh(
         vertices=mesh.vertices * scale, faces=mesh.faces, process=False, validate=False
     )
+
+
+def trimesh_of(blade: Blade, *, stations: int = SECTIONS, tip: Tip | None = None) -> Any:
+    """Return a blade's mesh as a `trimesh.Trimesh` [m], for `Blade.mesh`."""
+    return to_trimesh(from_blade(blade, stations=stations, tip=flat_tip if tip is None else tip))
 
 
 def assembled(parts: Sequence[tuple[str, TriangleMesh, Array, Array]]) -> bytes:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.support.arrays import Array, readonly
+from bladegen.support.values import brief
 
 __all__ = ["BEZIER", "CLOSED_EDGE", "ENDS", "SurfaceNet", "cone_volume", "fit"]
 
@@ -39,6 +40,8 @@ class SurfaceNet:
     v_knots: Array
     u: Array
     v: Array
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         for name in ("poles", "u_knots", "v_knots", "u", "v"):

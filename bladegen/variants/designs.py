@@ -103,6 +103,10 @@ class Design:
     count: int
     table: Array | None = field(default=None, repr=False)
 
+    def __repr__(self) -> str:
+        names = ", ".join(self.what.names)
+        return f"<Design of {self.count} variants: {self.kind}, seed {self.seed}, of {names}>"
+
     def __post_init__(self) -> None:
         if self.table is not None:
             object.__setattr__(self, "table", readonly(self.table))

@@ -10,6 +10,7 @@ from bladegen.errors import DesignError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import amount, instance, numbers, shown, suggestion
 from bladegen.support.arrays import Array, Mask, readonly
+from bladegen.support.values import brief
 
 __all__ = ["Factors", "factors"]
 
@@ -35,6 +36,8 @@ class Factors:
     high: Array
     spread: Array
     reach: float = 0.0
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         for name in ("low", "high", "spread"):

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, fields
 
 from bladegen.support.arrays import Array, Indices
+from bladegen.support.values import brief
 
 __all__ = ["CROSSING", "FAULTS", "SOUND", "THIN", "TURNED", "Batch"]
 
@@ -36,6 +37,8 @@ class Batch:
     faults: Indices
     looks: Array
     measures: Array | None = None
+
+    __repr__ = brief
 
     def take(self, rows: Indices, other: "Batch") -> None:
         """Put the variants of another batch in the place of some."""

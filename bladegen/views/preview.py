@@ -5,6 +5,16 @@ first needed, and before VTK is asked for a picture it is tried whether it can m
 may end the process where it cannot.
 """
 
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from bladegen.blade.blade import Blade
+from bladegen.errors import RenderError
+from bladegen.support.arguments import path_of
+from bladegen.support.files import replacing, require_suffix
+from bladegen.views.blade_scene import scene_of
 from bladegen.views.picture import gallery, picture, write_vtp
 from bladegen.views.renderer import quietly, require_renderer, require_window
 from bladegen.views.window import show
@@ -12,9 +22,44 @@ from bladegen.views.window import show
 __all__ = [
     "gallery",
     "picture",
+    "plot_blade",
     "quietly",
     "require_renderer",
     "require_window",
     "show",
     "write_vtp",
 ]
+
+
+def plot_blade(
+    blade: Blade,
+    *,
+    baseline: Blade | None = None,
+    colour: str = "plain",
+    screenshot: str | Path | None = None,
+) -> None:
+    """Show a blade: as a PNG, a picture in a notebook, or a window.  For `Blade.plot`."""
+    shown: Any = {"baseline": baseline, "colour": colour}
+    if screenshot is not None:
+        target = path_of(screenshot, "screenshot", RenderError)
+        require_suffix(target, (".png",), "screenshot")
+        with replacing(target) as temporary:
+            picture(blade, temporary, **shown)
+    elif _in_notebook():
+        from IPython import display
+
+        inline: Any = display
+
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "blade.png"
+            picture(blade, file, **shown)
+            inline.display(inline.Image(file.read_bytes()))
+    else:
+        show(scene_of(blade, baseline), colour=colour)
+
+
+def _in_notebook() -> bool:
+    """Tell whether a kernel that shows pictures runs this, not a terminal."""
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    return shell is not None and hasattr(shell, "kernel")

@@ -1,0 +1,99 @@
+"""What a blade gives to those who use it: a window, a mesh, a file, points, its volume.
+
+These functions are methods of `Blade`.  Rooms above it do the work, and are asked for it by name
+(`support.services`), so that a blade is made of nothing that draws or writes.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bladegen.blade.spans import both_sides, landmarks_at, span_fractions
+from bladegen.support.arrays import Array, ArrayLike
+from bladegen.support.services import service, shown_by
+
+if TYPE_CHECKING:
+    from trimesh import Trimesh
+
+__all__ = ["export", "html", "mesh", "plot", "point", "volume"]
+
+Tip = Callable[..., Any]
+
+
+def plot(
+    blade: Any,
+    *,
+    baseline: Any = None,
+    colour: str = "plain",
+    screenshot: str | Path | None = None,
+) -> None:
+    """Show the blade: in a window, as a picture in a notebook, or in a file.
+
+    Parameters
+    ----------
+    baseline : Blade, optional
+        What it was perturbed from: its lines are shown too, and `colour` may be "distance".
+    colour : str
+        "plain", "curvature" [1/m] or "distance" [m].
+    screenshot : str or Path, optional
+        A PNG to write instead, without a window.
+
+    Raises
+    ------
+    RenderError
+        If this machine has no display or cannot render, or there is no such colour.
+    """
+    service("plot_blade")(blade, baseline=baseline, colour=colour, screenshot=screenshot)
+
+
+def mesh(blade: Any, *, stations: int = 300, tip: Tip | None = None) -> "Trimesh":
+    """Return the blade's surface as a `trimesh.Trimesh`: watertight, outward, in metres.
+
+    Parameters
+    ----------
+    stations : int
+        How many sections; their landmarks are the vertices.
+    tip : callable, optional
+        `bladegen.surface.tips.flat_tip`, the default, or `round_tip`.
+    """
+    made: Trimesh = service("trimesh_of")(blade, stations=stations, tip=tip)
+    return made
+
+
+def point(blade: Any, eta: ArrayLike, u: ArrayLike) -> Array:
+    """Return points (..., 3) [m] of the surface, blade frame, at spans and landmark parameters.
+
+    Parameters
+    ----------
+    eta : (...) array
+        Span fractions, 0 (root) to 1 (tip).
+    u : (...) array
+        0 at the trailing edge of the first of `Blade.sides`, 0.5 at the leading edge, 1 at the
+        trailing edge of the second; broadcast with `eta`, so ``point(eta[:, None], u)`` is a grid.
+    """
+    spans, places = np.broadcast_arrays(span_fractions(eta), landmarks_at(u))
+    own, row = np.unique(spans, return_inverse=True)
+    symmetric, column = both_sides(places)
+    points: Array = blade.sections(own, symmetric)[row.reshape(spans.shape), column]
+    return points
+
+
+def export(blade: Any, path: str | Path, **options: Any) -> Path:
+    """Write the blade to a file in the format of its suffix; return the path.
+
+    Options are those of `bladegen.export`, such as ``tolerance`` [m] of solids, ``stations`` and
+    ``unit`` ("m" or "mm") of meshes, ``tip``, ``spacing`` of grids.
+    """
+    written: Path = service("export")(blade, path, **options)
+    return written
+
+
+def volume(blade: Any) -> float:
+    """The volume [m3] that the sections enclose, as `bladegen info` and `check` show it."""
+    enclosed: float = service("volume")(blade)
+    return enclosed
+
+
+html = shown_by("blade_html")

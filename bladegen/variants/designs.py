@@ -39,24 +39,24 @@ def _ellipsoid(what: Factors, unit: Array) -> Array:
     Normal deviates give the direction, and the distribution function of their length, which is
     that of chi, a radius whose r-th power is uniform.  What has no spread fills its box.
     """
-    from scipy.stats import chi2, norm
+    from scipy.special import chdtr, ndtri  # not scipy.stats, which takes a second to load
 
     result, shape = _box(what, unit), what.spread > 0
     r = int(np.count_nonzero(shape))
     if r:
-        normal = norm.ppf(np.clip(unit[:, shape], 1e-15, 1 - 1e-15))
+        normal = ndtri(np.clip(unit[:, shape], 1e-15, 1 - 1e-15))
         squares = np.sum(normal**2, axis=1, keepdims=True)
-        radius = chi2.cdf(squares, r) ** (1.0 / r) / np.sqrt(squares)
+        radius = chdtr(r, squares) ** (1.0 / r) / np.sqrt(squares)
         result[:, shape] = what.reach * radius * normal * what.spread[shape]
     return result
 
 
 def _normal(what: Factors, unit: Array) -> Array:
     """Carry points of a cube to the normal distribution of the data; the rest fills its box."""
-    from scipy.stats import norm
+    from scipy.special import ndtri
 
     result, shape = _box(what, unit), what.spread > 0
-    result[:, shape] = norm.ppf(np.clip(unit[:, shape], 1e-15, 1 - 1e-15)) * what.spread[shape]
+    result[:, shape] = ndtri(np.clip(unit[:, shape], 1e-15, 1 - 1e-15)) * what.spread[shape]
     return result
 
 

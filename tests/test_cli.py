@@ -90,7 +90,10 @@ def test_build_makes_grids_as_asked_for(tmp_path):
 def test_build_that_misses_its_tolerance_ends_with_1(tmp_path, monkeypatch):
     monkeypatch.setattr("bladegen.surface.fitting.MAX_SECTIONS", 20)
     monkeypatch.setattr("bladegen.surface.fitting.FIRST_SECTIONS", 20)
-    result = run("build", "nrel5mw", "-o", tmp_path, "--format", "step", "--tolerance", "0.001mm")
+    result = run(
+        "build", "nrel5mw", "-o", tmp_path, "--format", "step", "--tolerance", "0.001mm",
+        "--landmarks", 101,
+    )  # fmt: skip
     assert isinstance(result.exception, BladegenError)
     assert "out-of-tolerance" in str(result.exception)
 
@@ -109,17 +112,17 @@ def test_check_of_a_definition_and_of_a_file(tmp_path):
     assert figures["problems"] == []
 
 
-def test_check_of_something_unsound_ends_with_1(tmp_path):
+def test_check_of_something_unsound_ends_with_1(command, tmp_path):
     path = tmp_path / "open.stl"
     path.write_text(
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
         "endloop\nendfacet\nendsolid a\n"
     )
-    done = main("check", path)
-    assert done.returncode == 1
-    assert "watertight" in done.stdout
-    assert done.stderr.startswith("bladegen: ")
-    assert "is not watertight" in done.stderr
+    done = command("check", path)
+    assert done["status"] == 1
+    assert "watertight" in done["out"]
+    assert done["err"].startswith("bladegen: ")
+    assert "is not watertight" in done["err"]
 
 
 @pytest.mark.parametrize(
@@ -134,19 +137,19 @@ def test_check_of_something_unsound_ends_with_1(tmp_path):
         (["check", "nowhere.txt"], [".txt", ".stl"]),
     ],
 )
-def test_errors_are_one_line_and_exit_code_1(arguments, words, tmp_path):
-    done = main(*arguments)
-    assert done.returncode == 1
-    assert done.stderr.count("\n") == 1
-    assert done.stderr.startswith("bladegen: ")
+def test_errors_are_one_line_and_exit_code_1(command, arguments, words):
+    done = command(*arguments)
+    assert done["status"] == 1
+    assert done["err"].count("\n") == 1
+    assert done["err"].startswith("bladegen: ")
     for word in words:
-        assert word in done.stderr
+        assert word in done["err"]
 
 
-def test_usage_errors_have_exit_code_2():
-    assert main("build").returncode == 2
-    assert main("frobnicate").returncode == 2
-    assert main("build", "nrel5mw", "-o", ".", "--path", "cubic").returncode == 2
+def test_usage_errors_have_exit_code_2(command):
+    assert command("build")["status"] == 2
+    assert command("frobnicate")["status"] == 2
+    assert command("build", "nrel5mw", "-o", ".", "--path", "cubic")["status"] == 2
 
 
 def test_version_and_help():
@@ -180,7 +183,7 @@ def test_a_missing_library_is_said_in_a_line(monkeypatch, capsys):
 def test_perturb_builds_a_variant_and_says_what_was_changed(tmp_path):
     result = run(
         "perturb", "nrel5mw", "-o", tmp_path, "--pga", "0.03,-0.02,0.01,0", "--thickness", 1.05,
-        "--twist", 1, "--window", "0.05,0.2", "--format", "stl",
+        "--twist", 1, "--window", "0.05,0.2", "--format", "stl", "--stations", 60,
     )  # fmt: skip
     assert result.exit_code == 0, result.output
     report = json.loads((tmp_path / "nrel5mw-perturbed.report.json").read_text())
@@ -205,10 +208,10 @@ def test_perturb_by_affine_parameters_alone_and_names(tmp_path):
     }
 
 
-def test_perturb_beyond_the_bounds_ends_with_1(tmp_path):
-    done = main("perturb", "nrel5mw", "-o", tmp_path, "--pga", "0.9,0,0,0")
-    assert done.returncode == 1
-    assert "t1 = 0.9, allowed is" in done.stderr
+def test_perturb_beyond_the_bounds_ends_with_1(command, tmp_path):
+    done = command("perturb", "nrel5mw", "-o", tmp_path, "--pga", "0.9,0,0,0")
+    assert done["status"] == 1
+    assert "t1 = 0.9, allowed is" in done["err"]
     assert list(tmp_path.iterdir()) == []
 
 

@@ -274,8 +274,8 @@ def test_two_writers_of_one_space_leave_one_whole(command, tmp_path):
         ("cadquery", ("build", "nrel5mw", "-o", "{}", "--format", "stl", "--rotor", *SMALL)),
         ("matplotlib", ("space", "plot", "-o", "{}/a.png")),
         ("scipy", ("info", "nrel5mw", "--json")),
-        ("zarr", ("family", "nrel5mw", "-o", "{}", "--count", 2)),
-        ("pyarrow", ("family", "nrel5mw", "-o", "{}", "--count", 2)),
+        ("zarr", ("family", "nrel5mw", "-o", "{}", "--count", 2, "--spans", 16)),
+        ("pyarrow", ("family", "nrel5mw", "-o", "{}", "--count", 2, "--spans", 16)),
         ("distributed", ("family", "nrel5mw", "-o", "{}", "--count", 2, "--dask", "tcp://a:1")),
     ],
 )

@@ -65,12 +65,13 @@ def test_what_is_no_such_file_is_refused_in_a_line(suffix, spoil, tmp_path, fork
     assert len(str(refusal.value)) < 700
 
 
-def test_forty_damaged_files_end_well():
-    tally = fuzz(foreign_fuzzing.TARGETS, seed=14, count=40)
+@pytest.mark.parametrize("count", [16, pytest.param(40, marks=pytest.mark.nightly)])
+def test_damaged_files_end_well(count):
+    tally = fuzz(foreign_fuzzing.TARGETS, seed=14, count=count)
     assert tally.failures == []
-    assert tally.inputs == 40
+    assert tally.inputs == count
     refused = sum(n for outcome, n in tally.outcomes.items() if "FileError" in outcome)
-    assert 8 < refused < 36
+    assert 0.2 * count < refused < 0.9 * count
 
 
 @pytest.mark.parametrize(
@@ -131,11 +132,11 @@ def test_a_child_works_within_its_limits_and_ends_with_its_parent(tmp_path):
         "limit(100, 3 * 2**30, os.getppid())\n"
         f"open({str(tmp_path / 'limits')!r}, 'w').write(' '.join(str(resource.getrlimit(r)[0])"
         " for r in (resource.RLIMIT_CORE, resource.RLIMIT_CPU, resource.RLIMIT_AS)))\n"
-        "time.sleep(60)\n"
+        "time.sleep(3600)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert (tmp_path / "limits").read_text() == f"0 100 {3 * 2**30}"
-    end = time.monotonic() + 20.0
+    end = time.monotonic() + 600.0
     while Path(f"/proc/{int(done.stdout)}").exists() and time.monotonic() < end:
         time.sleep(0.05)
     assert not Path(f"/proc/{int(done.stdout)}").exists()

@@ -138,7 +138,7 @@ def test_a_perturbed_blade_is_a_blade_like_any_other(blades, tmp_path):
     from bladegen.cad import solids
     from bladegen.measures import checks
 
-    variant = blades["iea15mw"].perturbed(SPACE, T, thickness=1.05, name="variant")
+    variant = blades["nrel5mw"].perturbed(SPACE, T, thickness=1.05, name="variant")
     assert variant.name == "variant"
     assert variant.changes[0]["thickness"] == 1.05
     assert variant.changes[0]["pga"] == [T.tolist()]

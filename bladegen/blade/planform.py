@@ -25,7 +25,15 @@ from bladegen.support.arguments import function
 from bladegen.support.arrays import Array
 from bladegen.support.values import brief, state_of
 
-__all__ = ["Frames", "Planform", "SectionPlanes", "normal_to_axis", "normal_to_z", "placement"]
+__all__ = [
+    "PLANES",
+    "Frames",
+    "Planform",
+    "SectionPlanes",
+    "normal_to_axis",
+    "normal_to_z",
+    "placement",
+]
 
 AT_REST = 1e-6  # of the span, from an end at which the axis has no velocity
 FRAME_STEPS = 2000  # spans at which frames are carried; a sweep of 10 % turns by 1e-4 rad a step
@@ -58,6 +66,9 @@ def normal_to_axis(axis: ReferenceAxis) -> Frames:
         return carried[i] @ _turn(carried[i, 2], _tangents(axis, eta))
 
     return frames
+
+
+PLANES: dict[str, SectionPlanes] = {"axis": normal_to_axis, "z": normal_to_z}
 
 
 def _running_product(matrices: Array) -> Array:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from bladegen.blade.blade import PATHS, Blade
-from bladegen.blade.planform import normal_to_axis, normal_to_z
+from bladegen.blade.planform import PLANES
 from bladegen.cli.texts import chord_share, finish
 from bladegen.errors import BladegenError
 from bladegen.exports.inventory import made_by
@@ -18,7 +18,6 @@ from bladegen.surface.tips import TIPS, Tip, flat_tip
 
 __all__ = ["alike"]
 
-PLANES = {"axis": normal_to_axis, "z": normal_to_z}
 DIFFERENT = ("command", "unit", "schema", "tolerance mm", "stations")  # no other shape
 
 

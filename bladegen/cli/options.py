@@ -184,7 +184,7 @@ class Making:
     def blade(self, source: str, landmarks: int = LANDMARKS) -> Any:
         """Read and build a blade."""
         from bladegen.blade.blade import Blade
-        from bladegen.blade.planform import normal_to_axis, normal_to_z
+        from bladegen.blade.planform import PLANES
         from bladegen.cli.texts import chord_share, finish
         from bladegen.formats.reading import read
 
@@ -192,7 +192,7 @@ class Making:
             read(source, airfoils=self.airfoils),
             landmarks=landmarks,
             path=self.path,
-            planes={"axis": normal_to_axis, "z": normal_to_z}[self.planes],
+            planes=PLANES[self.planes],
             trailing_edge=finish(self.trailing_edge),
             fairing=chord_share(self.fairing, "fairing"),
         )

@@ -19,8 +19,11 @@ import numpy as np
 from bladegen import __version__
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.blade.paths import PATHS
+from bladegen.blade.planform import PLANES
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.support.files import digest_of
+from bladegen.surface.tips import TIPS
 
 __all__ = ["Provenance", "blade_settings", "content_of", "fingerprint", "made_from", "word"]
 
@@ -29,12 +32,7 @@ ID_DIGITS = 8  # of a SHA-256
 LONE = ("change", "mirrored")  # settings that are there only if something is changed
 FACTS = ("blade", "source", "sha256", "definition", "command")
 WORDS = {  # of functions, as the command line calls them
-    "geodesic_path": "geodesic",
-    "spline_path": "spline",
-    "normal_to_axis": "axis",
-    "normal_to_z": "z",
-    "flat_tip": "flat",
-    "round_tip": "round",
+    function.__name__: word for table in (PATHS, PLANES, TIPS) for word, function in table.items()
 }
 _TEXT = re.compile(r"bladegen ([^;\s]+); (blade=.*?); id=([0-9a-f]{8})")
 _SHORT = re.compile(r"bladegen (\S+) (.*?), unit: \w+, source ([0-9a-f]*), id ([0-9a-f]{8})")

@@ -7,7 +7,6 @@ where the blade bends.  Metres and radians, blade frame.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import radians
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from bladegen.blade.sanity import KINDS
 from bladegen.families.family import THINNEST
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.scene import Check, Curves, Scene
-from bladegen.studio.state import State
+from bladegen.studio.state import AFFINE, State
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.files import safe_stem
 from bladegen.variants.batch import FAULTS, Batch, SectionBatch
@@ -35,13 +34,7 @@ def changes(state: State) -> dict[str, Any]:
     asked: dict[str, Any] = {}
     if any(state.t):
         asked["t"] = list(state.t)
-    for name in ("thickness", "camber", "chord"):
-        if getattr(state, name) != 1.0:
-            asked[name] = getattr(state, name)
-    if state.twist:
-        asked["twist"] = radians(state.twist)
-    if state.prebend != 1.0:
-        asked["prebend_scale"] = state.prebend
+    asked |= {control.keyword: control.amount(state) for control in AFFINE if control.moved(state)}
     if state.window is not None:
         asked["window"] = Window(*state.window)
     return asked
@@ -88,14 +81,8 @@ class Baseline:
         return self._prepared.within(Window(*state.window)) if state.window else self._prepared
 
     def _asked(self, state: State) -> tuple[Array, AffineChange]:
-        change = AffineChange(
-            thickness=state.thickness,
-            camber=state.camber,
-            chord=state.chord,
-            twist=radians(state.twist),
-            prebend_scale=state.prebend,
-        )
-        return np.array([state.t]), change
+        amounts: Any = {control.keyword: control.amount(state) for control in AFFINE}
+        return np.array([state.t]), AffineChange(**amounts)
 
     def at(self, span: float) -> Scene:
         """Return the blade without changes, its section at a span fraction looked at."""

@@ -3,7 +3,7 @@
 import shlex
 
 from bladegen.studio.library import Entry
-from bladegen.studio.state import State
+from bladegen.studio.state import AFFINE, State
 
 __all__ = ["python", "shell"]
 
@@ -17,16 +17,10 @@ def shell(state: State, entry: Entry, stem: str) -> str:
         # a value that starts with a minus would be taken for an option
         words.append("--pga=" + ",".join(f"{value:g}" for value in state.t))
         words += ["--allow-extrapolation", "--allow-odd"]  # the checks have shown it
-    for name, option in (
-        ("thickness", "--thickness"),
-        ("camber", "--camber"),
-        ("chord", "--chord"),
-        ("prebend", "--prebend-scale"),
-    ):
-        if getattr(state, name) != 1.0:
-            words += [option, f"{getattr(state, name):g}"]
-    if state.twist:
-        words.append(f"--twist={state.twist:g}")
+    for control in AFFINE:
+        if control.moved(state):
+            value = f"{getattr(state, control.name):g}"
+            words += [f"{control.option}={value}"] if control.low < 0 else [control.option, value]
     if state.changed:
         if state.window is not None:
             words.append("--window={:g},{:g}".format(*state.window))
@@ -37,8 +31,9 @@ def shell(state: State, entry: Entry, stem: str) -> str:
 def python(state: State, entry: Entry, stem: str) -> str:
     """Return the script that makes the blade of a state and writes ``<stem>.step``."""
     folder = "" if entry.airfoils is None else f", airfoils={entry.airfoils!r}"
+    turned = any(control.unit == "deg" and control.moved(state) for control in AFFINE)
     lines = [
-        *(["from math import radians", ""] if state.twist else []),
+        *(["from math import radians", ""] if turned else []),
         "import bladegen as bg",
         "",
         f"blade = bg.Blade.from_definition(bg.read({entry.named!r}{folder}))",
@@ -48,18 +43,11 @@ def python(state: State, entry: Entry, stem: str) -> str:
         if any(state.t):
             asked += ["bg.ShapeSpace.bundled()", repr(list(state.t))]
             asked += ["allow_extrapolation=True", "allow_odd=True"]  # the checks have shown it
-        asked += [
-            f"{name}={getattr(state, field)!r}"
-            for name, field in (
-                ("thickness", "thickness"),
-                ("camber", "camber"),
-                ("chord", "chord"),
-                ("prebend_scale", "prebend"),
-            )
-            if getattr(state, field) != 1.0
-        ]
-        if state.twist:
-            asked.append(f"twist=radians({state.twist!r})")
+        for control in AFFINE:
+            value = repr(getattr(state, control.name))
+            if control.moved(state):
+                said = f"radians({value})" if control.unit == "deg" else value
+                asked.append(f"{control.keyword}={said}")
         if state.window is not None:
             asked.append("window=bg.Window({!r}, {!r})".format(*state.window))
         asked.append(f"name={stem!r}")

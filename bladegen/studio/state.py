@@ -8,7 +8,7 @@ same.  Twist is in degrees here, as people write it.
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
-from math import isfinite
+from math import isfinite, radians
 from typing import Any
 from urllib.parse import parse_qs, urlencode
 
@@ -36,6 +36,8 @@ class Control:
         Bounds, grid and the value that changes nothing, in `unit`.
     unit : str
         Shown behind the label.
+    keyword : str
+        What `Blade.perturbed` calls it.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Control:
     step: Decimal
     default: Decimal = Decimal(1)
     unit: str = ""
+    keyword: str = ""
 
     def parsed(self, value: object) -> float:
         """Return a number on the control's grid.
@@ -72,10 +75,26 @@ class Control:
         """Decimals that the step has."""
         return max(0, -int(self.step.normalize().as_tuple().exponent))
 
+    @property
+    def option(self) -> str:
+        """The option of `bladegen perturb` that does the same."""
+        return f"--{self.keyword.replace('_', '-')}"
 
-def _control(name: str, label: str, hint: str, *numbers: str, unit: str = "") -> Control:
+    def amount(self, state: "State") -> float:
+        """Return what the state's value is to `Blade.perturbed`; angles in radians."""
+        value = float(getattr(state, self.name))
+        return radians(value) if self.unit == "deg" else value
+
+    def moved(self, state: "State") -> bool:
+        """Tell whether a state has another value than the default."""
+        return bool(getattr(state, self.name) != float(self.default))
+
+
+def _control(
+    name: str, label: str, hint: str, *numbers: str, unit: str = "", keyword: str = ""
+) -> Control:
     low, high, step, default = map(Decimal, numbers)
-    return Control(name, label, hint, low, high, step, default, unit)
+    return Control(name, label, hint, low, high, step, default, unit, keyword or name)
 
 
 AFFINE = (
@@ -83,7 +102,16 @@ AFFINE = (
     _control("camber", "Camber", "Chord against thickness", "0.9", "1.1", "0.005", "1"),
     _control("chord", "Chord", "Wider or narrower, as thick", "0.85", "1.15", "0.01", "1"),
     _control("twist", "Twist", "Turns sections", "-5", "5", "0.1", "0", unit="deg"),
-    _control("prebend", "Prebend", "Bends the blade more or less", "0", "2", "0.05", "1"),
+    _control(
+        "prebend",
+        "Prebend",
+        "Bends the blade more or less",
+        "0",
+        "2",
+        "0.05",
+        "1",
+        keyword="prebend_scale",
+    ),
 )
 START = _control("start", "Fade from", "Nothing changes up to this span", "0", "1", "0.01", "0")
 END = _control("end", "Fade to", "All changes hold from this span on", "0", "1", "0.01", "0")
@@ -140,9 +168,7 @@ class State:
     @property
     def changed(self) -> bool:
         """Whether the blade is another than its baseline."""
-        return any(self.t) or any(
-            getattr(self, control.name) != float(control.default) for control in AFFINE
-        )
+        return any(self.t) or any(control.moved(self) for control in AFFINE)
 
     def value(self, name: str) -> float:
         """Return the number of the control `name` that is no end of the window."""

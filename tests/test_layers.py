@@ -83,3 +83,7 @@ def test_public_names_are_there_and_not_hidden_by_rooms():
     assert set(run(code).split()) == {"True"}
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = bladegen.nonsense
+
+
+def test_no_module_is_longer_than_300_lines():
+    assert not [n for n, p in NAMES.items() if len(p.read_text("utf-8").splitlines()) > 300]

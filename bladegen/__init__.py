@@ -15,6 +15,7 @@ from logging import NullHandler, getLogger
 from typing import TYPE_CHECKING, Any
 
 from bladegen.support.services import provide
+from bladegen.version import __version__
 
 if TYPE_CHECKING:
     from bladegen.blade.blade import Blade
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
     from bladegen.formats.reading import bundled, read
     from bladegen.formats.writing import write, write_airfoil
     from bladegen.shapes.shape_space import ShapeSpace
-
-__version__ = "1.0.0"
 
 getLogger(__name__).addHandler(NullHandler())  # who wants to hear more asks for it
 

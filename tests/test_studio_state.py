@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from bladegen.errors import StudioError
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.studio.state import AFFINE, AT, History, State, controls, from_query, to_query
+from bladegen.studio.controls import AFFINE, AT, controls
+from bladegen.studio.state import History, State, from_query, to_query
 from strategies import few
 
 SPACE = ShapeSpace.bundled()

@@ -14,10 +14,10 @@ import typer
 import typer.core
 import typer.main
 
-from bladegen import __version__
 from bladegen.cli.output import CLOSED_PIPE, OutputError, guarded
 from bladegen.errors import BladegenError, MissingLibraryError
 from bladegen.support.stopping import Stopped, stopped_by_signals
+from bladegen.version import __version__
 from bladegen.views.keys import help_text
 
 __all__ = ["SUMMARIES", "app", "command_of", "function_of", "main"]

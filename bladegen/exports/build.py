@@ -14,7 +14,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from bladegen import __version__
 from bladegen.blade.blade import Blade
 from bladegen.cad import exchange, shapes
 from bladegen.cad.rotor import Rotor, write_glb, write_step
@@ -33,6 +32,7 @@ from bladegen.support.files import alone, folder, replacing, safe_stem
 from bladegen.surface import mesh_files
 from bladegen.surface.deviation import Deviation
 from bladegen.surface.grid_quality import grid_figures
+from bladegen.version import __version__
 from bladegen.views import combs
 
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]

@@ -16,7 +16,6 @@ from urllib.parse import quote, unquote
 
 import numpy as np
 
-from bladegen import __version__
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.paths import PATHS
@@ -24,6 +23,7 @@ from bladegen.blade.planform import PLANES
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.support.files import digest_of
 from bladegen.surface.tips import TIPS
+from bladegen.version import __version__
 
 __all__ = ["Provenance", "blade_settings", "content_of", "fingerprint", "made_from", "word"]
 

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bladegen.studio.state import Control
+from bladegen.studio.controls import Control
 
 __all__ = ["number", "stage"]
 

@@ -16,8 +16,9 @@ from bladegen.blade.deformation import AffineChange, Window
 from bladegen.blade.sanity import KINDS
 from bladegen.families.family import THINNEST
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.studio.controls import AFFINE
 from bladegen.studio.scene import Check, Curves, Scene
-from bladegen.studio.state import AFFINE, State
+from bladegen.studio.state import State
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.files import safe_stem
 from bladegen.variants.batch import FAULTS, Batch, SectionBatch

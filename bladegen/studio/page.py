@@ -17,9 +17,10 @@ import numpy as np
 
 from bladegen.errors import BladegenError, StudioError
 from bladegen.studio import charts, recipes
+from bladegen.studio.controls import Control, controls
 from bladegen.studio.scene import Scene
 from bladegen.studio.shared import Studio
-from bladegen.studio.state import Control, History, State, controls, from_query, to_query
+from bladegen.studio.state import History, State, from_query, to_query
 from bladegen.studio.worker import Job, Made
 
 __all__ = ["Page", "Shown"]

@@ -6,9 +6,9 @@ from typing import Any
 
 from bladegen.studio.bar import bar, key
 from bladegen.studio.buttons import button, toggle
+from bladegen.studio.controls import AFFINE, END, START, Control
 from bladegen.studio.elements import number, stage
 from bladegen.studio.page import Page, Shown
-from bladegen.studio.state import AFFINE, END, START, Control
 
 __all__ = ["build"]
 

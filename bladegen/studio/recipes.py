@@ -2,8 +2,9 @@
 
 import shlex
 
+from bladegen.studio.controls import AFFINE
 from bladegen.studio.library import Entry
-from bladegen.studio.state import AFFINE, State
+from bladegen.studio.state import State
 
 __all__ = ["python", "shell"]
 

@@ -1,0 +1,53 @@
+"""What starts light and keeps to itself: light commands, the core, public names."""
+
+import ast
+import subprocess
+import sys
+
+import pytest
+from test_layers import HEAVY, NAMES, TREES, imports, room
+
+import bladegen
+
+CORE = ("airfoils", "blade", "definition", "shapes", "variants")
+
+
+def run(code):
+    return subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout
+
+
+def test_light_commands_load_nothing_heavy():
+    code = (
+        "import sys, bladegen; bladegen.read('iea15mw'); import bladegen.cli.commands;"
+        "print(*sorted({m.split('.')[0] for m in sys.modules}))"
+    )
+    assert not set(run(code).split()) & HEAVY
+
+
+def test_public_names_are_there_and_not_hidden_by_rooms():
+    code = (
+        "import bladegen.exports.build, bladegen.families.run, bladegen as bg;"
+        "print(callable(bg.export), callable(bg.family), set(dir(bg)) == set(bg.__all__),"
+        "all(getattr(bg, name) is not None for name in (*bg.__all__, 'grassmann', 'affine')))"
+    )
+    assert set(run(code).split()) == {"True"}
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        _ = bladegen.nonsense
+
+
+def test_no_module_is_longer_than_300_lines():
+    assert not [n for n, p in NAMES.items() if len(p.read_text("utf-8").splitlines()) > 300]
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if room(n) in CORE])
+def test_the_core_opens_no_file_and_prints_nothing(name):
+    tree = TREES[NAMES[name]]
+    calls = {
+        node.func.id
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    }
+    assert not calls & {"open", "print", "eval", "exec"}
+    assert not set(imports(tree)) & {"random", "logging", "os"}

@@ -1,9 +1,10 @@
 """A blade is a pure function of span: its shape in chords, and its sections in space.
 
-`Blade.from_definition` runs the paper's pipeline: landmarks, standardisation, clustering, a
-path on Gr(n, 2) with splines for the affine part, and the planform.  A `Blade` is a frozen
-value that holds values; everything about it follows from them.  Metres and radians, blade frame.
+`Blade.from_definition` runs the paper's pipeline.  A `Blade` is a frozen value that holds values;
+everything about it follows from them.  Metres and radians, blade frame.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -112,7 +113,7 @@ class Blade:
         trailing_edge: TrailingEdge = MINIMUM_EDGE,
         spacing: Spacing = clustered,
         fairing: float | None = TOLERANCE,
-    ) -> "Blade":
+    ) -> Blade:
         """Build a blade from its definition.
 
         Parameters
@@ -196,19 +197,18 @@ class Blade:
             placed = placed[:, ::-1] * MIRROR
         return placed.reshape(*spans.shape, *placed.shape[1:])
 
-    def with_trailing_edge(self, trailing_edge: TrailingEdge) -> "Blade":
+    def with_trailing_edge(self, trailing_edge: TrailingEdge) -> Blade:
         """Return the blade with another finish of its trailing edges."""
         return replace(self, trailing_edge=trailing_edge)
 
-    def mirror_image(self) -> "Blade":
+    def mirror_image(self) -> Blade:
         """Return the blade with `sections` and `axis` mirrored in y: its trailing edge at -y."""
         return replace(self, mirrored=not self.mirrored)
 
     def stations(self, count: int = 120) -> Array:
         """Return span fractions (count,) that resolve shape, planform and axis, increasing.
 
-        The root, the tip and the definition's stations are among them, the others crowd where the
-        surface bends along the span.  A count too small for these is a `DefinitionError`.
+        The root, the tip and the definition's are among them, others crowd where the surface bends.
         """
         fixed = np.unique(np.concatenate([[0.0], self.eta, [1.0]]))
         return self._crowding.spans(fixed, whole(count, "stations", DefinitionError))
@@ -234,7 +234,7 @@ class Blade:
         allow_extrapolation: bool = False,
         allow_odd: bool = False,
         name: str | None = None,
-    ) -> "Blade":
+    ) -> Blade:
         """Return a perturbed blade; this one stays as it is.
 
         Parameters
@@ -280,7 +280,7 @@ class Blade:
         *,
         name: str | None = None,
         **how: Unpack[Where],
-    ) -> "Blade":
+    ) -> Blade:
         """Return a perturbed blade as `perturbed` does, whose sections nobody has tested.
 
         For those who test them otherwise: `families` many at once, the studio after a move.
@@ -293,7 +293,7 @@ class Blade:
             changes=(*self.changes, asked.asked),
         )
 
-    def require_sound(self, *, allow_odd: bool = False) -> "Blade":
+    def require_sound(self, *, allow_odd: bool = False) -> Blade:
         """Return the blade if its sections are sound; findings say which are odd, if allowed."""
         asked = self.changes[-1] if self.changes else {}
         found = Trial(self.shape, self.definition, asked).findings(allow_odd=allow_odd)

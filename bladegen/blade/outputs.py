@@ -4,6 +4,8 @@ These functions are methods of `Blade`.  Rooms above it do the work, and are ask
 (`support.services`), so that a blade is made of nothing that draws or writes.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -48,7 +50,7 @@ def plot(
     service("plot_blade")(blade, baseline=baseline, colour=colour, screenshot=screenshot)
 
 
-def mesh(blade: Any, *, stations: int = 300, tip: Tip | None = None) -> "Trimesh":
+def mesh(blade: Any, *, stations: int = 300, tip: Tip | None = None) -> Trimesh:
     """Return the blade's surface as a `trimesh.Trimesh`: watertight, outward, in metres.
 
     Parameters

@@ -28,12 +28,12 @@ def export(
     tolerance: float = Options.tolerance,
     sections: int | None = None,
     stations: int = Options.stations,
-    tip: Tip = flat_tip,
+    tip: "Tip | None" = None,
     unit: str = Options.unit,
     step_schema: str = Options.step_schema,
     timestamp: str | None = None,
     largest: int | None = None,
-    spans: Array | None = None,
+    spans: "Array | None" = None,
     spacing: grid.Spacing | None = None,
     polars: str | None = None,
     reynolds: float | None = None,
@@ -54,8 +54,8 @@ def export(
         Solids: exactly so many sections instead of as many as the tolerance needs.
     stations : int
         Meshes and tables of sections: how many sections.
-    tip : callable
-        Solids, meshes and grids: `bladegen.surface.tips.flat_tip` or `round_tip`.
+    tip : callable, optional
+        Solids, meshes and grids: `bladegen.surface.tips.flat_tip`, the default, or `round_tip`.
     unit : str
         STL, PLY, OBJ, VTP, PLOT3D and VTU: "m" or "mm".  STEP, IGES, BREP and 3MF are always in
         millimetres, GLB and CGNS in metres.
@@ -100,7 +100,7 @@ def export(
         "tolerance": tolerance,
         "sections": sections,
         "stations": stations,
-        "tip": tip,
+        "tip": flat_tip if tip is None else tip,
         "unit": unit,
         "step_schema": step_schema,
         "timestamp": timestamp,

@@ -19,7 +19,7 @@ from bladegen.blade.paths import PATHS
 from bladegen.cad import exchange, solids
 from bladegen.measures.inflections import inflections
 from bladegen.measures.smoothness import edge_bulges
-from bladegen.views import combs
+from bladegen.plots import combs
 
 TOLERANCES = (0.05e-3, 1e-3)
 UNITS = {"poles": "", "STEP": "MB", "largest deviation": "mm", "RMS deviation": "mm"}

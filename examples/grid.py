@@ -11,9 +11,10 @@ import pyvista as pv
 from PIL import Image
 
 import bladegen as bg
+from bladegen.plots import style
 from bladegen.surface import grid
 from bladegen.surface.tips import round_tip
-from bladegen.views import preview, style
+from bladegen.views import preview
 
 COLOURS = {
     "suction side": "#b9c6d2",

@@ -11,8 +11,8 @@ import numpy as np
 import bladegen as bg
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.formats.baselines import baselines
+from bladegen.plots import figures, style
 from bladegen.shapes import affine, cst, grassmann
-from bladegen.views import plots, style
 
 RANKS = np.array([1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24])
 LEARNED, HELD_OUT, SEED = 200, 20, 2022
@@ -35,14 +35,14 @@ def main(target: Path) -> None:
         rows.append((np.median(np.sqrt((off**2).mean(axis=1))), np.median(off.max(axis=1))))
     rms, largest = np.array(rows).T
 
-    drawn, ((left, right),) = plots.figure(1, 2, width=10, height=4)
+    drawn, ((left, right),) = figures.figure(1, 2, width=10, height=4)
     left.semilogy(np.arange(1, 25), space.variance_ratio[:24], "o-", color=style.CATEGORIES[0])
     left.set(xlabel="mode", ylabel="share of the variance", title="spectrum")
     right.semilogy(RANKS, rms, "o-", color=style.CATEGORIES[0], label="RMS")
     right.semilogy(RANKS, largest, "s-", color=style.CATEGORIES[1], label="largest")
     right.set(xlabel="modes", ylabel="distance, chord", title="held-out shapes, median")
     right.legend()
-    plots.save_figure(drawn, target)
+    figures.save_figure(drawn, target)
     print(f"wrote {target}; 4 modes: RMS {rms[3]:.1e}, largest {largest[3]:.1e} chord")
 
 

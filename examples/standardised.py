@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 import bladegen as bg
+from bladegen.plots import figures
 from bladegen.shapes import affine
-from bladegen.views import plots
 
 
 def main(target: Path) -> None:
@@ -17,9 +17,9 @@ def main(target: Path) -> None:
     profiles = blade.profiles(blade.eta)
     X, M, _ = affine.standardise(profiles)
     X, _ = affine.cluster(X, M)
-    drawn, ((physical, standard),) = plots.figure(1, 2, width=11, height=4.4)
+    drawn, ((physical, standard),) = figures.figure(1, 2, width=11, height=4.4)
     for k, station in enumerate(blade.definition.stations):
-        colour = plots.shade(k / (len(profiles) - 1))
+        colour = figures.shade(k / (len(profiles) - 1))
         label = f"{station.eta:.2f} {station.airfoil.name}"
         physical.plot(*profiles[k].T, color=colour)
         standard.plot(*X[k].T, color=colour, label=label)
@@ -33,7 +33,7 @@ def main(target: Path) -> None:
         loc="center left",
         bbox_to_anchor=(1, 0.5),
     )
-    plots.save_figure(drawn, target)
+    figures.save_figure(drawn, target)
     print(f"wrote {target}")
 
 

@@ -15,8 +15,8 @@ import bladegen as bg
 from bladegen.airfoils.crossing import crossing_sections
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.formats.baselines import baselines
+from bladegen.plots import figures
 from bladegen.shapes import cst
-from bladegen.views import plots
 
 SEED, SWEEPS, STEPS, SHOWN = 7, 200, 11, 4
 EVERY = 4  # landmarks are thinned to 101 for the test of validity
@@ -49,18 +49,20 @@ def main(target: Path) -> None:
     by_cst = corners(drawn_cst.min(axis=0), drawn_cst.max(axis=0), rng)
     by_pga = corners(space.lower, space.upper, rng)
     flat_cst = cst.shapes(by_cst.reshape(-1, 18), space.u)
-    flat_pga = plots.physical(space.decode(by_pga.reshape(-1, 4)), airfoils[4])
+    flat_pga = figures.physical(space.decode(by_pga.reshape(-1, 4)), airfoils[4])
     shares = [100.0 * valid(shapes).mean() for shapes in (flat_cst, flat_pga)]
 
-    drawn, axes = plots.figure(2, SHOWN, width=12, height=5.2)
+    drawn, axes = figures.figure(2, SHOWN, width=12, height=5.2)
     for row, (shapes, title) in enumerate(((flat_cst, "CST"), (flat_pga, "principal geodesics"))):
         for column, sweep in enumerate(shapes.reshape(SWEEPS, STEPS, -1, 2)[:SHOWN]):
             for k, shape in enumerate(sweep):
-                axes[row, column].plot(*shape.T, color=plots.shade(k / (STEPS - 1)), linewidth=0.8)
+                axes[row, column].plot(
+                    *shape.T, color=figures.shade(k / (STEPS - 1)), linewidth=0.8
+                )
             axes[row, column].set(
                 aspect="equal", ylim=(-0.32, 0.32), title=f"{title}, sweep {column + 1}"
             )
-    plots.save_figure(drawn, target)
+    figures.save_figure(drawn, target)
     print(
         f"wrote {target}; valid shapes along {SWEEPS} sweeps of {STEPS} steps, seed {SEED}: "
         f"CST {shares[0]:.1f} %, principal geodesics {shares[1]:.1f} %"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import bladegen as bg
-from bladegen.views import plots
+from bladegen.plots import figures
 
 T = [0.06, -0.05, 0.03, 0.02]  # rad along the four modes
 
@@ -24,7 +24,7 @@ def main(target: Path) -> None:
     """Draw the perturbed sections grey, the stations nominal (dotted) and perturbed in colour."""
     blade = bg.Blade.from_definition(bg.read("iea15mw"))
     variant = blade.perturbed(bg.ShapeSpace.bundled(), T)
-    drawn, ((axis,),) = plots.figure(1, 1, width=13, height=4.2)
+    drawn, ((axis,),) = figures.figure(1, 1, width=13, height=4.2)
     wires = oblique(variant.sections(variant.stations(80)))
     for wire in wires:
         axis.plot(*wire.T, color="0.8", linewidth=0.5)
@@ -32,7 +32,7 @@ def main(target: Path) -> None:
         axis.plot(*wires[:, landmark].T, color="0.8", linewidth=0.5)
     stations = zip(blade.sections(blade.eta), variant.sections(blade.eta), strict=True)
     for k, (nominal, perturbed) in enumerate(stations):
-        colour = plots.shade(k / (len(blade.eta) - 1))
+        colour = figures.shade(k / (len(blade.eta) - 1))
         axis.plot(*oblique(nominal).T, color=colour, linewidth=1.2, linestyle=":")
         axis.plot(*oblique(perturbed).T, color=colour, linewidth=1.8)
     axis.set(
@@ -41,7 +41,7 @@ def main(target: Path) -> None:
         yticks=[],
         title=f"IEA 15 MW, t = {T}: stations nominal (dotted) and perturbed (solid)",
     )
-    plots.save_figure(drawn, target)
+    figures.save_figure(drawn, target)
     moved = np.abs(variant.profiles(blade.eta) - blade.profiles(blade.eta)).max()
     print(f"wrote {target}; stations moved by up to {moved:.3f} chord")
 

@@ -4,8 +4,8 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen.cli.view import What
+from bladegen.plots import blade_plots, path_plot
 from bladegen.shapes import grassmann
-from bladegen.views import blade_plots, path_plot
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,8 @@ import bladegen as bg
 from bladegen.airfoils.landmarks import contour
 from bladegen.cli.options import Making
 from bladegen.errors import BladegenError, ExportError
-from bladegen.views import combs
-from bladegen.views.style import BASELINE, VARIANT
+from bladegen.plots import combs
+from bladegen.plots.style import BASELINE, VARIANT
 from strategies import ellipse
 
 

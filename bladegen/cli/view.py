@@ -228,9 +228,9 @@ def plot(
 
     A perturbed blade is drawn over its baseline.
     """
+    from bladegen.plots.blade_plots import PLOTS
+    from bladegen.plots.figures import SUFFIXES, save_figure, save_pages
     from bladegen.support.files import folder, replacing, require_suffix, safe_stem
-    from bladegen.views.blade_plots import PLOTS
-    from bladegen.views.plots import SUFFIXES, save_figure, save_pages
 
     wanted = list(dict.fromkeys(what or [What.all]))
     chosen = list(PLOTS) if What.all in wanted else [one.value for one in wanted]

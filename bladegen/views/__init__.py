@@ -1,5 +1,5 @@
-"""Blades to look at: pictures, diagrams, pages, films, windows.
+"""Blades to look at: pictures, pages, films, windows, and what a notebook shows.
 
-In come blades and measures; out go PNG, SVG, HTML and films.  A `scene` says what there is to see
-and the other modules draw it.  A new diagram over span goes into `blade_plots`.
+In come blades and measures; out go PNG, HTML and films.  A `scene` says what there is to see, and
+the other modules draw it.  Another quantity as colour goes into `blade_scene`.
 """

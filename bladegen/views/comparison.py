@@ -14,6 +14,7 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import FileError
 from bladegen.measures import distances, foreign, surfaces
 from bladegen.measures.surfaces import Surface
+from bladegen.plots.style import INK, STATION
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
 from bladegen.surface.tips import Tip, flat_tip
@@ -24,7 +25,6 @@ from bladegen.views.picture import save_image
 from bladegen.views.preview import quietly, require_renderer
 from bladegen.views.renderer import image_of
 from bladegen.views.scene import Field, Layer, Scene
-from bladegen.views.style import INK, STATION
 
 __all__ = ["Comparison", "Side", "compared", "draw", "scene", "surface_of"]
 

@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import RenderError
+from bladegen.plots import style
 from bladegen.support.arrays import Array
 from bladegen.support.files import require_suffix
-from bladegen.views import keys, style
+from bladegen.views import keys
 from bladegen.views.cameras import ANGLE, VIEWS
 from bladegen.views.drawing import HEADLIGHT, LIGHTS, shaded
 from bladegen.views.scene import Field, Scene

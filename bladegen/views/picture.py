@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.plots.style import INK
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
@@ -25,7 +26,6 @@ from bladegen.views.drawing import (
 )
 from bladegen.views.renderer import image_of, quietly, require_renderer
 from bladegen.views.scene import Field, Scene
-from bladegen.views.style import INK
 
 __all__ = ["gallery", "picture", "save_image", "write_vtp"]
 

@@ -15,12 +15,12 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.blade.deformation import RANGES
 from bladegen.errors import ExportError, RenderError, visible
+from bladegen.plots import style
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
 from bladegen.variants.factors import factors
-from bladegen.views import style
 from bladegen.views.blade_scene import DISTANCE, MILLIMETRES
 from bladegen.views.cameras import VIEWS, View
 from bladegen.views.drawing import (

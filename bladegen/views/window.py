@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bladegen.plots.style import INK, STATION
 from bladegen.views import keys
 from bladegen.views.cameras import VIEWS
 from bladegen.views.drawing import (
@@ -21,7 +22,6 @@ from bladegen.views.drawing import (
 )
 from bladegen.views.renderer import quietly, require_window
 from bladegen.views.scene import Scene
-from bladegen.views.style import INK, STATION
 
 __all__ = ["Window", "show"]
 

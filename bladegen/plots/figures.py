@@ -8,11 +8,11 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import visible
+from bladegen.plots.style import CATEGORIES, FAINT, INK, SEQUENTIAL
 from bladegen.shapes import affine
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array
 from bladegen.support.files import require_suffix
-from bladegen.views.style import CATEGORIES, FAINT, INK, SEQUENTIAL
 
 __all__ = [
     "SUFFIXES",

@@ -12,9 +12,9 @@ import numpy as np
 
 from bladegen.airfoils.landmarks import Contour, contour
 from bladegen.blade.blade import Blade
+from bladegen.plots.figures import figure, save_figure, titled
+from bladegen.plots.style import BASELINE, INK, VARIANT
 from bladegen.support.arrays import Array, Mask
-from bladegen.views.plots import figure, save_figure, titled
-from bladegen.views.style import BASELINE, INK, VARIANT
 
 __all__ = ["Comb", "comb", "draw", "drawing", "figures", "roughness"]
 

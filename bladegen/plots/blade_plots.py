@@ -12,12 +12,12 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.measures.spanwise import LINES, sides, spanwise
+from bladegen.plots import combs
+from bladegen.plots.figures import dress, figure, figure_of, pair, shade, titled
+from bladegen.plots.path_plot import path
+from bladegen.plots.style import BASELINE, INK, VARIANT
 from bladegen.shapes import affine
 from bladegen.support.arrays import Array
-from bladegen.views import combs
-from bladegen.views.path_plot import path
-from bladegen.views.plots import dress, figure, figure_of, pair, shade, titled
-from bladegen.views.style import BASELINE, INK, VARIANT
 
 __all__ = ["PLOTS", "Plot", "overview"]
 

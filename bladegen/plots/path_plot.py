@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.plots.figures import figure, pair, titled
+from bladegen.plots.style import BASELINE, CATEGORIES, INK, VARIANT
 from bladegen.shapes import grassmann
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array
-from bladegen.views.plots import figure, pair, titled
-from bladegen.views.style import BASELINE, CATEGORIES, INK, VARIANT
 
 __all__ = ["path"]
 

@@ -175,7 +175,7 @@ def test_a_missing_library_is_said_in_a_line(monkeypatch, capsys):
     with pytest.raises(SystemExit, match="1"):
         commands.main()
     said = capsys.readouterr().err
-    assert said.startswith("bladegen: this command needs OCP, which cannot be imported (libGL.so.1")
+    assert said.startswith("bladegen: this needs OCP, which cannot be imported (libGL.so.1")
     assert "pip install cadquery-ocp" in said
     assert said.count("\n") == 1
 

@@ -15,6 +15,7 @@ from bladegen.definition.blade_definition import (
     Airfoil,
     BladeDefinition,
     Distribution,
+    ReferenceAxis,
     Rotor,
     Station,
 )
@@ -286,3 +287,18 @@ def test_an_openfast_and_a_hawc2_user_convert(tmp_path: Path):
     assert "spanwise table" in said
     third = bg.read(tmp_path / "three.csv")
     assert surfaces_apart(tenth(), third) < 0.5
+
+
+def test_nodes_for_shapes_leave_no_quantity_off(tmp_path):
+    """PCHIP changes with each point of its grid, so those added for shapes are checked too."""
+    small = tenth()
+    axis = ReferenceAxis(*(scaled(q, 10.0) for q in (small.axis.x, small.axis.y, small.axis.z)))
+    whole = replace(small, chord=scaled(small.chord, 10.0), axis=axis)
+    said = bg.write(whole, tmp_path / "a.dat")
+    assert not [finding for finding in said if finding.where == "read back"]
+    (nodes,) = (finding.message for finding in said if finding.where == "BlSpn")
+    assert nodes.endswith("at most 0.48 mm off")
+
+
+def scaled(quantity, factor):
+    return Distribution(quantity.grid, factor * quantity.values)

@@ -11,7 +11,7 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import BladeDefinition, Distribution, pchip, united
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, ArrayLike
 
 __all__ = ["MOST_NODES", "TOLERANCE", "common_grid", "shape_grid"]
 
@@ -26,7 +26,11 @@ CLOSEST = 1e-6  # of the span; intervals shorter than this are not split
 
 
 def common_grid(
-    definition: BladeDefinition, tolerance: float = TOLERANCE, *, over_z: bool = False
+    definition: BladeDefinition,
+    tolerance: float = TOLERANCE,
+    *,
+    over_z: bool = False,
+    also: ArrayLike = (),
 ) -> tuple[Array, float]:
     """Return span fractions (m,) that carry all quantities of a blade, and what is lost.
 
@@ -41,6 +45,8 @@ def common_grid(
         As said [m].
     over_z : bool
         Whether a reader of the format interpolates over z, not over the span fraction.
+    also : (k,) array
+        Span fractions that the grid must hold too: PCHIP changes with every point of its grid.
 
     Returns
     -------
@@ -67,7 +73,7 @@ def common_grid(
             worst = np.maximum(worst, np.abs(turned).max(axis=1))
         return worst
 
-    return _halved(_united(definition, quantities), error, tolerance)
+    return _halved(_united(definition, quantities, also), error, tolerance)
 
 
 def shape_grid(blade: Blade, grid: Array) -> Array:
@@ -94,12 +100,14 @@ def _halved(grid: Array, error: Callable[[Array], Array], tolerance: float) -> t
 
 
 def _united(
-    definition: BladeDefinition, quantities: list[tuple[Distribution, Distribution]]
+    definition: BladeDefinition,
+    quantities: list[tuple[Distribution, Distribution]],
+    also: ArrayLike,
 ) -> Array:
     """Return all grid points and stations, the ends among them, near doubles left out."""
     grids = [quantity.grid for quantity, _ in quantities]
     stations = [station.eta for station in definition.stations]
-    return united([0.0, 1.0], stations, *grids, apart=CLOSEST)
+    return united([0.0, 1.0], stations, *grids, also, apart=CLOSEST)
 
 
 def _quantities(definition: BladeDefinition) -> list[tuple[Distribution, Distribution]]:

@@ -57,9 +57,9 @@ def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Fin
     Returns these lines, none without polars, and what the files cannot hold.
     """
     given, definition = definition, ruled(definition)
-    eta, loss = common_grid(definition, TOLERANCE, over_z=True)
+    eta, _ = common_grid(definition, TOLERANCE, over_z=True)
     blade = Blade.from_definition(definition, landmarks=LANDMARKS)
-    eta = shape_grid(blade, eta)
+    eta, loss = common_grid(definition, TOLERANCE, over_z=True, also=shape_grid(blade, eta))
     profiles = blade.profiles(eta)
     thickness = blade.splines.fit(profiles).relative_thickness
     tables = tables_at(definition, eta.tolist())

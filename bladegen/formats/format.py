@@ -11,9 +11,10 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import DefinitionError, Finding
 from bladegen.formats.common.document import Notes
 
-__all__ = ["Format", "PutBack", "Reader", "Writer"]
+__all__ = ["GRID", "Format", "PutBack", "Reader", "Writer"]
 
 WHOLE = 5e-6  # m; formats with a grid for each quantity hold a blade to 1e-6, where they can
+GRID = 1.5e-3  # m; formats with one grid are within 0.3 or 0.5 mm of each quantity
 
 
 @dataclass(frozen=True)

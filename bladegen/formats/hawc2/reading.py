@@ -31,10 +31,8 @@ from bladegen.formats.hawc2.polar_reading import Profile, profile_sets, with_pro
 from bladegen.formats.hawc2.rotor import rotor
 from bladegen.support.arrays import Array
 
-__all__ = ["AE_SUFFIX", "HALF", "MARK", "PC_SUFFIX", "SUFFIXES", "blade_name", "read", "recognises"]
+__all__ = ["AE_SUFFIX", "HALF", "PC_SUFFIX", "blade_name", "read", "recognises"]
 
-MARK = "a main_body with c2_def"
-SUFFIXES = (".htc",)
 AE_SUFFIX = "_ae.dat"
 PC_SUFFIX = "_pc.dat"
 HALF = 0.5

@@ -26,10 +26,8 @@ from bladegen.formats.common.text_file import head
 from bladegen.formats.numad import stations as numad_stations
 from bladegen.support.arrays import Array
 
-__all__ = ["MARK", "SHEET", "SUFFIXES", "read", "recognises"]
+__all__ = ["SHEET", "read", "recognises"]
 
-MARK = "the sheet Geometry of a NuMAD workbook, or <numad> of a project file"
-SUFFIXES = (".xlsx", ".nmd")
 PROJECT = ".nmd"
 SHEET = "Geometry"
 FIRST_ROW = 7

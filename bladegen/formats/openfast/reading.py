@@ -39,13 +39,8 @@ from bladegen.formats.openfast.model import (
 from bladegen.formats.openfast.polar_reading import COLUMNS as COLUMNS_OF_TABLES
 from bladegen.support.arrays import Array
 
-__all__ = ["COLUMNS", "MARK", "SUFFIXES", "TWIST_SUFFIX", "read", "recognises"]
+__all__ = ["COLUMNS", "TWIST_SUFFIX", "read", "recognises"]
 
-MARK = (
-    "an AeroDyn blade table with BlSpn and BlChord, an AeroDyn input with ADBlFile(1), or a .fst "
-    "file with AeroFile"
-)
-SUFFIXES = (".dat", TURBINE)
 COLUMNS = {
     "BlSpn": Range(0.0, 1000.0, "m"),
     "BlCrvAC": Range(-1000.0, 1000.0, "m"),

@@ -21,10 +21,8 @@ from bladegen.formats.common.document import Notes, Range
 from bladegen.formats.common.text_file import head, number, numbers, read_lines, referred
 from bladegen.support.arrays import Array
 
-__all__ = ["MARK", "POLAR_FILES", "SUFFIXES", "read", "recognises"]
+__all__ = ["POLAR_FILES", "read", "recognises"]
 
-MARK = "the columns POS, CHORD and TWIST of a QBlade blade"
-SUFFIXES = (".bld",)
 SHAPES = (".afl",)
 POLAR_FILES = ".plr"
 COLUMNS = {

@@ -29,10 +29,8 @@ from bladegen.formats.common.table import Block, Cell, Rows, blocks, values_of
 from bladegen.formats.common.text_file import delimiter_of, head, number, read_lines
 from bladegen.support.arrays import Array
 
-__all__ = ["AIRFOIL", "FACTS", "GEOMETRY", "MARK", "SUFFIXES", "read", "recognises"]
+__all__ = ["AIRFOIL", "FACTS", "GEOMETRY", "read", "recognises"]
 
-MARK = "a table with span and chord"
-SUFFIXES = (".csv", ".xlsx")
 GEOMETRY, AIRFOIL = "Blade Geometry", "Airfoil "
 UPWIND = "positive upwind in this layout; read with its sign turned"
 FACTS = {

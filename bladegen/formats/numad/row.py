@@ -1,0 +1,32 @@
+"""What bladegen does with files of NuMAD; what does it is imported when it is asked for."""
+
+from pathlib import Path
+
+from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.formats.common.document import Notes
+from bladegen.formats.format import Format, Reader
+
+__all__ = ["FORMAT"]
+
+
+def _recognises(path: Path) -> bool:
+    from bladegen.formats.numad.reading import recognises
+
+    return recognises(path)
+
+
+def _read(path: Path, notes: Notes, airfoils: Path | None) -> BladeDefinition | None:
+    from bladegen.formats.numad.reading import read
+
+    return read(path, notes, airfoils)
+
+
+FORMAT = Format(
+    "NuMAD",
+    Reader(
+        (".xlsx", ".nmd"),
+        "the sheet Geometry of a NuMAD workbook, or <numad> of a project file",
+        _recognises,
+        _read,
+    ),
+)

@@ -198,11 +198,15 @@ def test_a_surface_of_no_numbers_is_refused(step, monkeypatch):
     from bladegen.measures import foreign
 
     honest = foreign.ask("surface", step)
-    for name, value in (("0/poles", np.nan), ("0/weights", 0.0)):
+    for name, value, said in (
+        ("0/poles", np.nan, "no numbers"),
+        ("0/weights", 0.0, "no numbers"),
+        ("0/poles", 1e300, r"a number of 1e\+300 in its surface, allowed is 1e\+09"),
+    ):
         arrays = dict(honest.arrays) | {"0/weights": np.ones(honest.arrays["0/poles"].shape[:2])}
         arrays[name] = np.full_like(arrays[name], value)
         monkeypatch.setattr(foreign, "ask", lambda *_, a=arrays: foreign.Answer(honest.facts, a))
-        with pytest.raises(FileError, match="no numbers"):
+        with pytest.raises(FileError, match=said):
             surface_of(step)
 
 

@@ -3,3 +3,12 @@
 In comes what a user types; out go files, figures and lines.  Nothing is computed here: a new
 option goes beside its command, one of several commands into `options`.
 """
+
+__all__ = ["main"]
+
+
+def main() -> None:
+    """Run the command line: `bladegen.cli.commands`."""
+    from bladegen.cli.commands import main as run
+
+    run()

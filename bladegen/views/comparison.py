@@ -17,6 +17,7 @@ from bladegen.measures.surfaces import Surface
 from bladegen.plots.style import INK, STATION
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
+from bladegen.surface.mesh_files import FARTHEST
 from bladegen.surface.tips import Tip, flat_tip
 from bladegen.views.blade_scene import MILLIMETRES
 from bladegen.views.cameras import VIEWS
@@ -134,6 +135,11 @@ def surface_of(source: Path | Blade, tip: Tip = flat_tip) -> Side:
     sound = all(np.isfinite(n).all() for n in numbers) and all((w > 0).all() for w in weights)
     if not sound:
         raise FileError(str(source), ["has a surface of points that are no numbers"])
+    reach = max((float(np.abs(n).max()) for n in numbers if n.size), default=0.0)
+    if reach > FARTHEST:
+        raise FileError(
+            str(source), [f"has a number of {reach:.3g} in its surface, allowed is {FARTHEST:g}"]
+        )
     if foreign.kind_of(source) == "solid":
         surface = surfaces.of_faces(answer.arrays)
     else:

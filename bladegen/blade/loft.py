@@ -171,15 +171,11 @@ def lofted(
     if fairing is not None:
         amount(fairing, "fairing", DefinitionError)
     u = landmark_parameters(whole(landmarks, "landmarks", DefinitionError), spacing)
-    curves = {
-        id(station.airfoil): contour(station.airfoil.coordinates, fairing=fairing)
-        for station in definition.stations
-    }
-    shapes = {key: curve.landmarks(u) for key, curve in curves.items()}
-    keys = [id(station.airfoil) for station in definition.stations]
-    airfoils = np.stack([shapes[key] for key in keys])
+    contours = tuple(
+        contour(station.airfoil.coordinates, fairing=fairing) for station in definition.stations
+    )
+    airfoils = np.stack([curve.landmarks(u) for curve in contours])
     X, M, b = affine.standardise(airfoils)
-    contours = tuple(curves[key] for key in keys)
     eta = np.array([station.eta for station in definition.stations])
     findings = (
         definition.findings + opened(definition, contours) + disagreeing(definition, u, airfoils)

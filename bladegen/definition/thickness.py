@@ -47,10 +47,7 @@ def ruled(definition: BladeDefinition) -> BladeDefinition:
     if definition.relative_thickness is not None:
         return definition
     u = landmark_parameters(LANDMARKS)
-    shapes = {
-        id(station.airfoil): contour(station.airfoil.coordinates, fairing=TOLERANCE).landmarks(u)
-        for station in definition.stations
-    }
-    airfoils = np.stack([shapes[id(station.airfoil)] for station in definition.stations])
+    curves = [contour(one.airfoil.coordinates, fairing=TOLERANCE) for one in definition.stations]
+    airfoils = np.stack([curve.landmarks(u) for curve in curves])
     eta = np.array([station.eta for station in definition.stations])
     return replace(definition, relative_thickness=own_thickness(eta, u, airfoils))

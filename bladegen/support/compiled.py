@@ -1,4 +1,4 @@
-"""Functions compiled by Numba, which is loaded with this module: so import it late.
+"""Functions compiled by Numba, which is loaded with the first of them: so import them late.
 
 Numba compiles a function when it is first called and keeps the result on the disk, in the
 package's folder or the user's cache.  What it keeps it makes anew when the file of the function

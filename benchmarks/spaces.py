@@ -22,7 +22,7 @@ import numpy as np
 from figures import asked, figure, seconds
 
 from bladegen.airfoils.landmarks import landmarks
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.formats.baselines import baselines
 from bladegen.shapes import affine, cst, grassmann
 from bladegen.shapes.shape_space import ShapeSpace

@@ -31,9 +31,9 @@ from figures import figure
 from figures import parser as arguments
 
 import bladegen as bg
-from bladegen.airfoils.crossing import crossing_sections
 from bladegen.blade import edges
 from bladegen.cad import exchange, shapes, solids
+from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import BladegenError, PerturbationError
 from bladegen.measures import checks, properties
 from bladegen.surface.tips import Tip, flat_tip, round_tip

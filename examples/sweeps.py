@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 import bladegen as bg
-from bladegen.airfoils.crossing import crossing_sections
 from bladegen.airfoils.landmarks import landmarks
+from bladegen.curves.crossing import crossing_sections
 from bladegen.formats.baselines import baselines
 from bladegen.plots import figures
 from bladegen.shapes import cst

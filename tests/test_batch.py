@@ -5,11 +5,11 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen.airfoils import polygons
-from bladegen.airfoils.crossing import crossing_sections
 from bladegen.blade.deformation import AffineChange, Window
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.soundness import Trial
+from bladegen.curves import polygons
+from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import GeometryError
 from bladegen.shapes import affine
 from bladegen.variants.batch import FAULTS, LOST_THICKNESS, SectionBatch

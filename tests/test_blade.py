@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from bladegen.airfoils.landmarks import landmarks
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven
 from bladegen.blade.planform import normal_to_z

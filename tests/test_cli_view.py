@@ -5,10 +5,11 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cli import commands
-from bladegen.cli.changes import Changes
+from bladegen.cli.options.perturbing import Changes
 from bladegen.cli.view import What
 from bladegen.errors import BladegenError
-from bladegen.views import keys, preview, sweep
+from bladegen.views import preview, sweep
+from bladegen.views.rendering import keys
 
 pytestmark = pytest.mark.usefixtures("foreign_here")
 

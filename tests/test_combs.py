@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen.airfoils.landmarks import contour
-from bladegen.cli.options import Making
+from bladegen.cli.options.common import Making
 from bladegen.errors import BladegenError, ExportError
 from bladegen.plots import combs
 from bladegen.plots.style import BASELINE, VARIANT

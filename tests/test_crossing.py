@@ -1,8 +1,8 @@
 import numpy as np
 from hypothesis import given
 
-from bladegen.airfoils.crossing import crossing_sections, first_crossing
 from bladegen.airfoils.landmarks import landmarks
+from bladegen.curves.crossing import crossing_sections, first_crossing
 from strategies import airfoils, circle
 
 

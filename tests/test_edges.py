@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
-from bladegen.cli.texts import finish
+from bladegen.cli.options.parsing import finish
 from bladegen.errors import BladegenError, GeometryError
 from strategies import airfoils, circle
 

@@ -104,7 +104,7 @@ def test_properties_are_those_of_the_sections(reference):
     family = planned()
     variant = family.variant(5)
     finished = variant.trailing_edge(variant.profiles(family.eta), variant.chord(family.eta))
-    from bladegen.airfoils import polygons
+    from bladegen.curves import polygons
 
     wanted = polygons.measure(finished * variant.chord(family.eta)[:, None, None])
     assert_allclose(table["section_area_m2"][5], wanted[:, 0], rtol=1e-6)

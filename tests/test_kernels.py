@@ -14,12 +14,13 @@ from numba.core.caching import CacheImpl
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen.airfoils import characteristics, plane_maps, polygons
-from bladegen.airfoils.crossing import crossing_sections
+from bladegen.airfoils import characteristics
 from bladegen.airfoils.landmarks import landmarks
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.deformation import AffineChange, Window
 from bladegen.blade.edges import MinimumThickness
+from bladegen.curves import plane_maps, polygons
+from bladegen.curves.crossing import crossing_sections
 from bladegen.support import compiled
 from bladegen.variants import kernels, section_measures, sizes
 from bladegen.variants.batch import SectionBatch
@@ -50,7 +51,7 @@ def plain():
     try:
         decorator = loaded(compiled)
         maps = loaded(plane_maps, **{"bladegen.support.compiled": decorator})
-        loaded_looks = loaded(characteristics, **{"bladegen.airfoils.plane_maps": maps})
+        loaded_looks = loaded(characteristics, **{"bladegen.curves.plane_maps": maps})
         looks = {"bladegen.airfoils.characteristics": loaded_looks}
         measured = loaded(section_measures, **looks)
         inner = loaded(sizes, **{"bladegen.variants.section_measures": measured})

@@ -9,8 +9,8 @@ import pytest
 import bladegen
 
 PACKAGE = Path(bladegen.__file__).parent
-ROOMS = """errors version support airfoils shapes definition blade variants formats surface cad
-measures plots views exports families studio cli""".split()  # noqa: SIM905
+ROOMS = """errors version support curves airfoils shapes definition blade variants formats surface
+cad measures plots views exports families studio cli""".split()  # noqa: SIM905
 HEAVY = set(
     """OCP PIL cadquery distributed fastapi h5py imageio_ffmpeg matplotlib neuralfoil nicegui numba
     openpyxl pyarrow pyvista ruamel scipy trimesh uvicorn vtkmodules zarr""".split()  # noqa: SIM905

@@ -19,7 +19,7 @@ from bladegen.surface import fitting, mesh, mesh_files
 from bladegen.surface.grid import Spacing
 from bladegen.surface.grid import from_blade as grid_of
 from bladegen.surface.tips import flat_tip, round_tip
-from bladegen.views.blade_scene import scene_of
+from bladegen.views.rendering.blade_scene import scene_of
 
 FLIP = np.array([1.0, -1.0, 1.0])
 

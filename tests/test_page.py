@@ -12,8 +12,9 @@ from playwright.sync_api import sync_playwright
 
 import bladegen as bg
 from bladegen.errors import RenderError
-from bladegen.views import keys, page
-from bladegen.views.blade_scene import scene_of
+from bladegen.views import page
+from bladegen.views.rendering import keys
+from bladegen.views.rendering.blade_scene import scene_of
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 TWO_FRAMES = "new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))"

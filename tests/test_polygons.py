@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.airfoils import polygons
+from bladegen.curves import polygons
 from bladegen.measures.properties import volume
 from bladegen.surface import mesh, mesh_files
 

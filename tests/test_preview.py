@@ -7,7 +7,7 @@ from PIL import Image
 import bladegen as bg
 from bladegen.errors import ExportError, RenderError
 from bladegen.views import preview
-from bladegen.views.picture import _round_step
+from bladegen.views.rendering.picture import _round_step
 
 
 @pytest.fixture(scope="module")

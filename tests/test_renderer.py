@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bladegen.errors import RenderError
-from bladegen.views import renderer
+from bladegen.views.rendering import renderer
 
 RENDER = (
     "import sys; from pathlib import Path; import bladegen as bg\n"

@@ -7,9 +7,9 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen.errors import RenderError
 from bladegen.surface import mesh
-from bladegen.views import blade_scene, scene
-from bladegen.views.cameras import ANGLE, VIEWS, View, camera
-from bladegen.views.drawing import cuts, polylines, shaded, signed_distances
+from bladegen.views.rendering import blade_scene, scene
+from bladegen.views.rendering.cameras import ANGLE, VIEWS, View, camera
+from bladegen.views.rendering.drawing import cuts, polylines, shaded, signed_distances
 
 
 @pytest.fixture(scope="module")

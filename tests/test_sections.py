@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.errors import GeometryError
 from strategies import airfoils, box, circle, ellipse, four_digit
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from bladegen.airfoils.landmarks import landmarks
-from bladegen.airfoils.separation import graphs, ladders, once_back_and_forth
+from bladegen.curves.separation import graphs, ladders, once_back_and_forth
 from strategies import airfoils, circle
 
 

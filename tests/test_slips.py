@@ -4,7 +4,8 @@ import pytest
 from typer.testing import CliRunner
 
 import bladegen as bg
-from bladegen.cli import commands, options
+from bladegen.cli import commands
+from bladegen.cli.options import common
 from bladegen.errors import BladegenError
 
 BLADE = bg.Blade.from_definition(bg.read("iea15mw"))
@@ -104,7 +105,7 @@ def typed(tmp_path, monkeypatch):
     def blade(_making, source, *_):
         return BLADE if source in bg.bundled() else bg.read(source)
 
-    monkeypatch.setattr(options.Making, "blade", blade)
+    monkeypatch.setattr(common.Making, "blade", blade)
     return lambda line: CliRunner().invoke(commands.app, line)
 
 
@@ -124,13 +125,13 @@ def test_usage_errors_name_the_option_that_is_meant(typed, line):
 
 
 def test_formats_may_come_with_commas_dots_and_capitals():
-    assert options.suffixes_of(["STEP, .stl", "sections.csv"]) == (
+    assert common.suffixes_of(["STEP, .stl", "sections.csv"]) == (
         "step",
         "stl",
         "sections.csv",
     )
-    assert options.suffixes_of(["stl", "stl"]) == ("stl",)
-    assert options.suffixes_of(None) == ()
+    assert common.suffixes_of(["stl", "stl"]) == ("stl",)
+    assert common.suffixes_of(None) == ()
 
 
 def test_choices_are_taken_in_any_case(typed):

@@ -9,7 +9,7 @@ from test_layers import HEAVY, NAMES, TREES, imports, room
 
 import bladegen
 
-CORE = ("airfoils", "blade", "definition", "shapes", "variants")
+CORE = ("airfoils", "blade", "curves", "definition", "shapes", "variants")
 
 
 def run(code):

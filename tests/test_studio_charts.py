@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.studio.charts import planform, section, ticks
 from bladegen.studio.model import Baseline
+from bladegen.studio.page.charts import planform, section, ticks
 from bladegen.studio.state import State
 
 

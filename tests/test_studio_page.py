@@ -19,7 +19,7 @@ from bladegen.errors import StudioError
 from bladegen.measures import checks
 from bladegen.studio import server
 from bladegen.studio.library import Library
-from bladegen.studio.page import Page
+from bladegen.studio.page.tab import Page
 from bladegen.studio.server import serve
 from bladegen.studio.visits import MOST, Visits
 from bladegen.studio.worker import Worker

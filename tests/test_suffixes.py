@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cli import commands as cli
-from bladegen.cli import options
+from bladegen.cli.options import common
 from bladegen.errors import ExportError
 from bladegen.views import page, sweep
-from bladegen.views.picture import save_image
+from bladegen.views.rendering.picture import save_image
 
 RUN = CliRunner()
 READ = {"airfoils", "space", "table", "into"}  # options that name what is read
@@ -80,7 +80,7 @@ def test_no_option_that_names_an_output_is_left_unchecked():
                     unchecked.add(f"{command.__name__} {name}")
     assert checked >= 10
     assert unchecked == {"plot output"}  # a file or a folder: it looks itself
-    assert options.ending_in(".png")(None, None) is None
+    assert common.ending_in(".png")(None, None) is None
 
 
 def test_functions_refuse_them_too(tmp_path):

@@ -3,10 +3,11 @@ import pytest
 
 import bladegen as bg
 from bladegen.errors import RenderError
-from bladegen.views import keys, preview, renderer
-from bladegen.views.blade_scene import scene_of
-from bladegen.views.cameras import VIEWS
-from bladegen.views.window import Window
+from bladegen.views import preview
+from bladegen.views.rendering import keys, renderer
+from bladegen.views.rendering.blade_scene import scene_of
+from bladegen.views.rendering.cameras import VIEWS
+from bladegen.views.rendering.window import Window
 
 SIZE = (640, 360)
 

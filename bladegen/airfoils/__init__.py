@@ -2,6 +2,6 @@
 
 In come the points of an airfoil, noisy or not; out go n landmarks that mean the same place on
 every section (`landmarks`), splines through them with leading edge, thickness and chord
-(`curves`), proofs that a contour does not cross itself, and polars.  A new measure of a section,
-or a new rule for its landmarks, goes here.
+(`section_curves`), chord lines and polars.  A new measure of a section, or a new rule for its
+landmarks, goes here; mathematics of any plane curve goes into `curves`.
 """

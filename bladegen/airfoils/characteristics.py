@@ -12,7 +12,7 @@ from math import atan, atan2
 
 import numpy as np
 
-from bladegen.airfoils.plane_maps import Numbers
+from bladegen.curves.plane_maps import Numbers
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionCurves
+from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.errors import PerturbationError
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.values import brief

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionCurves
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_curves import SectionCurves
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.definition.blade_definition import Interpolant
 from bladegen.errors import GeometryError
 from bladegen.shapes import affine

@@ -12,11 +12,11 @@ from functools import cached_property
 import numpy as np
 
 from bladegen.airfoils.landmarks import Contour, Spacing, contour, landmark_parameters
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.edge_widths import EdgeWidths, Joining
 from bladegen.blade.paths import PATHS, Parameter, Path, PathMaker, SectionSpline, geodesic_path
+from bladegen.definition.airfoil_findings import disagreeing, opened
 from bladegen.definition.blade_definition import BladeDefinition, Distribution, pchip
-from bladegen.definition.remarks import disagreeing, opened
 from bladegen.definition.thickness import own_thickness
 from bladegen.errors import DefinitionError, Finding
 from bladegen.shapes import affine

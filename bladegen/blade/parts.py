@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 from bladegen.airfoils.landmarks import Contour
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.deformation import Deformation, Thickening
 from bladegen.blade.edge_widths import Joining
 from bladegen.blade.loft import Loft

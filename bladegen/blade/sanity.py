@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionCurves
+from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array, Indices
 

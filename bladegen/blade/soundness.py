@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.airfoils.crossing import crossing_sections
 from bladegen.blade.deformation import Deformation
 from bladegen.blade.sanity import ODD, Oddities, characteristics, oddities
 from bladegen.blade.shape import Shape
+from bladegen.curves.crossing import crossing_sections
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import Finding, PerturbationError
 from bladegen.shapes import affine

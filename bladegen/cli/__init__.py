@@ -1,7 +1,8 @@
 """The command line: parse, call, print.
 
-In comes what a user types; out go files, figures and lines.  Nothing is computed here: a new
-option goes beside its command, one of several commands into `options`.
+In comes what a user types; out go files, figures and lines.  Nothing is computed here: a command
+is a module here and a line in `commands`, a new option goes beside its command, and one that
+several commands share into `options`.
 """
 
 __all__ = ["main"]

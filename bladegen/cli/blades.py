@@ -4,7 +4,7 @@ import json
 
 import typer
 
-from bladegen.cli.options import Airfoils, BladeName, Json
+from bladegen.cli.options.common import Airfoils, BladeName, Json
 from bladegen.cli.terminal import print_figures, print_findings, print_table
 
 __all__ = ["info", "list_blades"]

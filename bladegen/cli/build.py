@@ -5,9 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.changes import NO_CHANGES, Changes
-from bladegen.cli.groups import grouped
-from bladegen.cli.options import (
+from bladegen.cli.options.common import (
     LANDMARKS,
     MAKING,
     PRODUCING,
@@ -19,6 +17,8 @@ from bladegen.cli.options import (
     Target,
     suffixes_of,
 )
+from bladegen.cli.options.groups import grouped
+from bladegen.cli.options.perturbing import NO_CHANGES, Changes
 from bladegen.cli.terminal import print_summary, progress_bar
 from bladegen.errors import BladegenError
 
@@ -66,7 +66,7 @@ def build(
         raise BladegenError("hub-radius, precone: are of the rotor; add --rotor, or leave them out")
     if rotor:
         from bladegen.cad.rotor import rotor_of
-        from bladegen.cli.texts import metres, radians
+        from bladegen.cli.options.parsing import metres, radians
 
         whole = rotor_of(
             made,

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.options import MAKING, Airfoils, Json, ending_in
+from bladegen.cli.options.common import MAKING, Airfoils, Json, ending_in
 from bladegen.cli.terminal import print_figures, print_findings, print_table, progress_bar
 from bladegen.errors import BladegenError
 
@@ -84,7 +84,7 @@ def _compare(
     file: str, other: str, screenshot: Path | None, airfoils: Path | None, as_json: bool
 ) -> None:
     """Measure two surfaces against each other and print, or draw, what was found."""
-    from bladegen.cli.likeness import alike
+    from bladegen.cli.provenance import alike
     from bladegen.support.files import replacing
     from bladegen.views.comparison import compared, draw, surface_of
 

@@ -18,7 +18,7 @@ from bladegen.cli.output import CLOSED_PIPE, OutputError, guarded
 from bladegen.errors import BladegenError, MissingLibraryError
 from bladegen.support.stopping import Stopped, stopped_by_signals
 from bladegen.version import __version__
-from bladegen.views.keys import help_text
+from bladegen.views.rendering.keys import help_text
 
 __all__ = ["SUMMARIES", "app", "command_of", "function_of", "main"]
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.options import Airfoils, BladeName, Polars, Reynolds
+from bladegen.cli.options.common import Airfoils, BladeName, Polars, Reynolds
 from bladegen.cli.terminal import print_findings, print_table, progress_bar
 
 __all__ = ["convert"]

@@ -7,9 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.changes import ChordLine
-from bladegen.cli.groups import grouped
-from bladegen.cli.options import (
+from bladegen.cli.options.common import (
     LANDMARKS,
     MAKING,
     PRODUCING,
@@ -20,6 +18,8 @@ from bladegen.cli.options import (
     Target,
     suffixes_of,
 )
+from bladegen.cli.options.groups import grouped
+from bladegen.cli.options.perturbing import ChordLine
 from bladegen.cli.terminal import print_table, remark, variants_bar
 from bladegen.errors import FamilyError
 from bladegen.support.stopping import Stopped
@@ -87,7 +87,7 @@ def family(
     ] = False,
 ) -> None:
     """Make a family of perturbed blades: sections, a manifest, files and a contact sheet."""
-    from bladegen.cli.texts import factor_bounds, factor_table, span_window
+    from bladegen.cli.options.parsing import factor_bounds, factor_table, span_window
     from bladegen.families.family import family as plan
     from bladegen.families.order import Order
     from bladegen.families.run import run

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from bladegen.cli.options import ending_in
+from bladegen.cli.options.common import ending_in
 from bladegen.cli.terminal import print_findings, print_space, print_table, progress_bar
 
 __all__ = ["app"]

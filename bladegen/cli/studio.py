@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from bladegen.cli.options import Airfoils
+from bladegen.cli.options.common import Airfoils
 
 __all__ = ["studio"]
 

@@ -6,10 +6,10 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.changes import NO_CHANGES, Changes
 from bladegen.cli.check import blade_of
-from bladegen.cli.groups import grouped
-from bladegen.cli.options import LANDMARKS, MAKING, BladeName, Landmarks, Making, ending_in
+from bladegen.cli.options.common import LANDMARKS, MAKING, BladeName, Landmarks, Making, ending_in
+from bladegen.cli.options.groups import grouped
+from bladegen.cli.options.perturbing import NO_CHANGES, Changes
 from bladegen.cli.terminal import progress_bar, variants_bar
 from bladegen.errors import BladegenError
 
@@ -130,7 +130,7 @@ def _show(
     from bladegen.support.files import replacing
     from bladegen.views import page
     from bladegen.views import preview as view
-    from bladegen.views.blade_scene import scene_of
+    from bladegen.views.rendering.blade_scene import scene_of
 
     if screenshot is not None:
         with progress_bar() as progress, replacing(screenshot) as temporary:
@@ -152,7 +152,7 @@ def _sweep(
     blade: Any, space: Any, texts: list[str], count: int, gif: Path | None, mp4: Path | None
 ) -> None:
     """Render a sweep once and write it as asked."""
-    from bladegen.cli.texts import factor_bounds
+    from bladegen.cli.options.parsing import factor_bounds
     from bladegen.support.files import replacing
     from bladegen.views import sweep
     from bladegen.views.tables import megabytes

@@ -16,7 +16,7 @@ import numpy as np
 
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.airfoils.polars import ESTIMATED, Polar
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.airfoils.viterna import STALL, extended
 from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Station
 from bladegen.errors import BladegenError, Finding

@@ -13,7 +13,7 @@ import numpy as np
 
 from bladegen.airfoils.fairing import TOLERANCE
 from bladegen.airfoils.landmarks import contour, landmark_parameters
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.definition.blade_definition import BladeDefinition, Distribution
 from bladegen.support.arrays import Array
 

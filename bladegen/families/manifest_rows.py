@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.airfoils import polygons
+from bladegen.curves import polygons
 from bladegen.families.block import Block
 from bladegen.families.family import Family
 from bladegen.families.folder import sections_digest

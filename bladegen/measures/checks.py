@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.airfoils import polygons
 from bladegen.airfoils.chord_lines import ChordLines
-from bladegen.airfoils.crossing import crossing_sections
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import MinimumThickness
+from bladegen.curves import polygons
+from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import Finding
 from bladegen.measures import foreign, inflections, properties, smoothness, spanwise
 from bladegen.measures.file_figures import mesh_figures, solid_figures

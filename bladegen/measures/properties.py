@@ -6,7 +6,7 @@ trailing edge by a straight line), by Green's theorem.
 
 import numpy as np
 
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.blade import Blade
 from bladegen.support.arrays import Array
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from bladegen.airfoils import polygons
 from bladegen.blade.blade import Blade
+from bladegen.curves import polygons
 from bladegen.shapes import affine
 from bladegen.support.arrays import Array
 

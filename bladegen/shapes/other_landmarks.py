@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.errors import SpaceError
 from bladegen.shapes.saved_spaces import ORTHONORMAL
 from bladegen.support.arrays import Array

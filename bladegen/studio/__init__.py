@@ -1,8 +1,8 @@
-"""The studio: a blade on a page in the browser, its parameters as sliders.
+"""The studio: a blade in the browser, its parameters as sliders.
 
-`state` is what a page shows, as a frozen value and as the query of a link; `library` the blades
-it may show; `model` makes geometry, curves and checks of both; `charts` draws the curves as
-SVG; `recipes` says the same blade as a command; `worker` writes files in a process of its own;
-`stage` is the 3D view, `page` the controls around it, `guard` and `server` how it is served.
-Only `stage`, `page` and `server` know the web framework.
+In comes a `state` (what a page shows, as a frozen value and as the query of a link) and the
+`library` of blades it may show; out go a `scene` (surface, curves and checks, made by `model`),
+files (`worker`) and the same blade as a command (`recipes`).  A slider is a row of `controls` and a
+field of `state`; what stands on the screen goes into `page`, which alone with `server` knows the
+web framework.
 """

@@ -18,7 +18,7 @@ from typing import Any, Literal
 from bladegen.errors import StudioError
 from bladegen.studio.guard import Guard, is_loopback
 from bladegen.studio.library import UPLOAD_BYTES, Library
-from bladegen.studio.page import Page
+from bladegen.studio.page.tab import Page
 from bladegen.studio.shared import Studio
 
 __all__ = ["PORT", "Serving", "bound", "serve"]
@@ -168,10 +168,10 @@ def _application(studio: Studio) -> Any:
     from fastapi import FastAPI, Request, Response
     from nicegui import ui
 
-    from bladegen.studio.panels import build
+    from bladegen.studio.page.panels import build
 
     app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
-    style = (Path(__file__).parent / "studio.css").read_text(encoding="utf-8")
+    style = (Path(__file__).parent / "page" / "studio.css").read_text(encoding="utf-8")
 
     @app.get("/studio/{name}/{count}/{which}")
     def packet(name: str, count: int, which: Literal["now", "baseline"]) -> Response:  # noqa: ARG001

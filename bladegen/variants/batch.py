@@ -10,14 +10,14 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.airfoils import polygons
 from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
-from bladegen.airfoils.crossing import crossing_sections
-from bladegen.airfoils.curves import SectionCurves
+from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.blade.blade import Blade
 from bladegen.blade.deformation import AffineChange, Window, faded
 from bladegen.blade.edges import AsGiven, MinimumThickness, TrailingEdge
 from bladegen.blade.sanity import CHARACTERISTICS, Oddities, characteristics, oddities
+from bladegen.curves import polygons
+from bladegen.curves.crossing import crossing_sections
 from bladegen.shapes import affine
 from bladegen.shapes.domain import Domain
 from bladegen.shapes.shape_space import ShapeSpace

@@ -16,9 +16,9 @@ from math import cos, inf, sin, sqrt
 import numpy as np
 
 from bladegen.airfoils.characteristics import characterise
-from bladegen.airfoils.plane_maps import Numbers, carried, carry, combine, motion_of, onto
-from bladegen.airfoils.separation import ANGLES, APART, FLAT
 from bladegen.blade.edges import WINDOW
+from bladegen.curves.plane_maps import Numbers, carried, carry, combine, motion_of, onto
+from bladegen.curves.separation import ANGLES, APART, FLAT
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.compiled import compiled
 from bladegen.variants.section_measures import Section

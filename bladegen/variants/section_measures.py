@@ -1,6 +1,6 @@
 """Compiled: what a section measures on its splines: its noses, and its thickest place.
 
-`curves.SectionCurves` once more, for one section in a loop of a compiled function, with the
+`section_curves.SectionCurves` once more, for one section in a loop of a compiled function, with the
 notation and the tolerances there.  Points are (2, n): x, then y; landmarks i and -1 - i lie
 opposite.  Splines are linear in features (`batch`), and so are their slopes at landmarks.
 """
@@ -8,10 +8,10 @@ opposite.  Splines are linear in features (`batch`), and so are their slopes at 
 from math import copysign
 from typing import NamedTuple
 
-from bladegen.airfoils.curves import SAME_NOSE
-from bladegen.airfoils.plane_maps import Numbers, turned
 from bladegen.airfoils.resizing import RIVAL
-from bladegen.airfoils.roots import ITERATIONS, PARAMETER_TOLERANCE
+from bladegen.airfoils.section_curves import SAME_NOSE
+from bladegen.curves.plane_maps import Numbers, turned
+from bladegen.curves.roots import ITERATIONS, PARAMETER_TOLERANCE
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
 

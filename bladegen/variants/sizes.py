@@ -1,15 +1,16 @@
 """Compiled: the map that brings a section to unit chord and to a relative thickness.
 
-`splines.SectionSplines.normalising` once more, for one section in a loop of a compiled function,
-with the notation and the tolerances there.  What is measured stands in `section_measures`.
+`section_splines.SectionSplines.normalising` once more, for one section in a loop of a compiled
+function, with the notation and the tolerances there.  What is measured: `section_measures`.
 """
 
 from math import asin, copysign, sin, sqrt
 
 import numpy as np
 
-from bladegen.airfoils.curves import AMBIGUOUS, EVEN, SETTLED
-from bladegen.airfoils.plane_maps import (
+from bladegen.airfoils.resizing import RIVAL
+from bladegen.airfoils.section_curves import AMBIGUOUS, EVEN, SETTLED
+from bladegen.curves.plane_maps import (
     Numbers,
     between,
     carried,
@@ -18,8 +19,7 @@ from bladegen.airfoils.plane_maps import (
     followed,
     turned,
 )
-from bladegen.airfoils.resizing import RIVAL
-from bladegen.airfoils.roots import ITERATIONS, ROUNDING
+from bladegen.curves.roots import ITERATIONS, ROUNDING
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
 from bladegen.variants.section_measures import Section, noses, thickest

@@ -1,5 +1,5 @@
 """Blades to look at: pictures, pages, films, windows, and what a notebook shows.
 
-In come blades and measures; out go PNG, HTML and films.  A `scene` says what there is to see, and
-the other modules draw it.  Another quantity as colour goes into `blade_scene`.
+In come blades and measures; out go PNG, HTML, films and tables.  What a scene is and how it is
+drawn stands in `rendering`; here is what is made of it.  Another kind of view is a module here.
 """

@@ -19,13 +19,13 @@ from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
 from bladegen.surface.mesh_files import FARTHEST
 from bladegen.surface.tips import Tip, flat_tip
-from bladegen.views.blade_scene import MILLIMETRES
-from bladegen.views.cameras import VIEWS
-from bladegen.views.drawing import add_colour_bar, add_surface, cuts, dress, look, shaded
-from bladegen.views.picture import save_image
 from bladegen.views.preview import quietly, require_renderer
-from bladegen.views.renderer import image_of
-from bladegen.views.scene import Field, Layer, Scene
+from bladegen.views.rendering.blade_scene import MILLIMETRES
+from bladegen.views.rendering.cameras import VIEWS
+from bladegen.views.rendering.drawing import add_colour_bar, add_surface, cuts, dress, look, shaded
+from bladegen.views.rendering.picture import save_image
+from bladegen.views.rendering.renderer import image_of
+from bladegen.views.rendering.scene import Field, Layer, Scene
 
 __all__ = ["Comparison", "Side", "compared", "draw", "scene", "surface_of"]
 

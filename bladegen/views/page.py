@@ -18,10 +18,10 @@ from bladegen.errors import RenderError
 from bladegen.plots import style
 from bladegen.support.arrays import Array
 from bladegen.support.files import require_suffix
-from bladegen.views import keys
-from bladegen.views.cameras import ANGLE, VIEWS
-from bladegen.views.drawing import HEADLIGHT, LIGHTS, shaded
-from bladegen.views.scene import Field, Scene
+from bladegen.views.rendering import keys
+from bladegen.views.rendering.cameras import ANGLE, VIEWS
+from bladegen.views.rendering.drawing import HEADLIGHT, LIGHTS, shaded
+from bladegen.views.rendering.scene import Field, Scene
 
 __all__ = ["LANDMARKS", "LARGEST", "document", "write_page"]
 

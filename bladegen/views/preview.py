@@ -14,10 +14,10 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import RenderError
 from bladegen.support.arguments import path_of
 from bladegen.support.files import replacing, require_suffix
-from bladegen.views.blade_scene import scene_of
-from bladegen.views.picture import gallery, picture, write_vtp
-from bladegen.views.renderer import quietly, require_renderer, require_window
-from bladegen.views.window import show
+from bladegen.views.rendering.blade_scene import scene_of
+from bladegen.views.rendering.picture import gallery, picture, write_vtp
+from bladegen.views.rendering.renderer import quietly, require_renderer, require_window
+from bladegen.views.rendering.window import show
 
 __all__ = [
     "gallery",

@@ -21,9 +21,9 @@ from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
 from bladegen.variants.factors import factors
-from bladegen.views.blade_scene import DISTANCE, MILLIMETRES
-from bladegen.views.cameras import VIEWS, View
-from bladegen.views.drawing import (
+from bladegen.views.rendering.blade_scene import DISTANCE, MILLIMETRES
+from bladegen.views.rendering.cameras import VIEWS, View
+from bladegen.views.rendering.drawing import (
     add_colour_bar,
     add_lines,
     add_surface,
@@ -33,8 +33,8 @@ from bladegen.views.drawing import (
     shaded,
     signed_distances,
 )
-from bladegen.views.renderer import quietly, require_renderer, shot
-from bladegen.views.scene import Field, reach_of
+from bladegen.views.rendering.renderer import quietly, require_renderer, shot
+from bladegen.views.rendering.scene import Field, reach_of
 
 __all__ = ["Motion", "frames", "require_encoder", "write_gif", "write_mp4"]
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.airfoils.crossing import first_crossing
+from bladegen.curves.crossing import first_crossing
 from bladegen.definition.blade_definition import MAX_AIRFOIL_POINTS
 from bladegen.formats.airfoils.closing import ends
 from bladegen.formats.common.document import Range

@@ -101,7 +101,7 @@ def require_polars(definition: BladeDefinition, path: Path, tool: str) -> None:
     ExportError
         If some have none.
     """
-    from bladegen.definition.blending import without_polars  # late: who reads asks for none
+    from bladegen.definition.blending import without_polars
 
     bare = without_polars(definition)
     if bare:

@@ -117,7 +117,7 @@ def within(definition: BladeDefinition, note: Note) -> BladeDefinition:
             most = max(most, -low, high - 1.0)
     if not moved:
         return definition
-    from bladegen.blade.blade import Blade  # late: who reads windIO makes no blade
+    from bladegen.blade.blade import Blade
 
     result = replace(
         definition,

@@ -3,7 +3,7 @@
 import numpy as np
 
 from bladegen.airfoils.landmarks import Contour
-from bladegen.airfoils.splines import SectionSplines
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array

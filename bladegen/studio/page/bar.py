@@ -4,9 +4,9 @@ import json
 from html import escape
 from typing import Any
 
-from bladegen.studio.buttons import button
 from bladegen.studio.library import UPLOAD_BYTES, UPLOAD_FILES, UPLOADS
-from bladegen.studio.page import Page
+from bladegen.studio.page.buttons import button
+from bladegen.studio.page.tab import Page
 from bladegen.studio.worker import formats
 
 __all__ = ["bar", "key"]

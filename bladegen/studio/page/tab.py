@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import BladegenError, StudioError
-from bladegen.studio import charts, recipes
+from bladegen.studio import recipes
 from bladegen.studio.controls import Control, controls
+from bladegen.studio.page import charts
 from bladegen.studio.scene import Scene
 from bladegen.studio.shared import Studio
 from bladegen.studio.state import History, State, from_query, to_query

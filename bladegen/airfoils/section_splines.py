@@ -5,7 +5,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from bladegen.airfoils.curves import SectionCurves
+from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.values import brief
 

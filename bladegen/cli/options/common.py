@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.groups import COMMAND
+from bladegen.cli.options.groups import COMMAND
 from bladegen.errors import BladegenError
 
 __all__ = [
@@ -185,7 +185,7 @@ class Making:
         """Read and build a blade."""
         from bladegen.blade.blade import Blade
         from bladegen.blade.planform import PLANES
-        from bladegen.cli.texts import chord_share, finish
+        from bladegen.cli.options.parsing import chord_share, finish
         from bladegen.formats.reading import read
 
         made = Blade.from_definition(
@@ -244,7 +244,7 @@ class Producing:
 
     def options(self) -> Any:
         """Return how products are made."""
-        from bladegen.cli.texts import metres
+        from bladegen.cli.options.parsing import metres
         from bladegen.exports.options import Options
         from bladegen.surface.grid import Spacing
         from bladegen.surface.tips import TIPS
@@ -281,7 +281,7 @@ MAKING, PRODUCING = Making(), Producing()
 
 def suffixes_of(formats: list[str] | None) -> tuple[str, ...]:
     """Return the suffixes of the formats that are asked for, none by default."""
-    from bladegen.cli.texts import suffixes
+    from bladegen.cli.options.parsing import suffixes
     from bladegen.exports import registry
 
     if not formats:

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from bladegen.plots.style import INK, STATION
-from bladegen.views import keys
-from bladegen.views.cameras import VIEWS
-from bladegen.views.drawing import (
+from bladegen.views.rendering import keys
+from bladegen.views.rendering.cameras import VIEWS
+from bladegen.views.rendering.drawing import (
     add_colour_bar,
     add_lines,
     add_surface,
@@ -20,8 +20,8 @@ from bladegen.views.drawing import (
     look,
     shaded,
 )
-from bladegen.views.renderer import quietly, require_window
-from bladegen.views.scene import Scene
+from bladegen.views.rendering.renderer import quietly, require_window
+from bladegen.views.rendering.scene import Scene
 
 __all__ = ["Window", "show"]
 

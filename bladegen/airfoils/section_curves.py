@@ -13,9 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.airfoils.cubics import Cubics
 from bladegen.airfoils.resizing import RIVAL, resizing, stretching
-from bladegen.airfoils.roots import ITERATIONS, bracketed, falling
+from bladegen.curves.cubics import Cubics
+from bladegen.curves.roots import ITERATIONS, bracketed, falling
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, Mask, mapped
 from bladegen.support.values import brief

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.airfoils.roots import PARAMETER_TOLERANCE, falling
+from bladegen.curves.roots import PARAMETER_TOLERANCE, falling
 from bladegen.support.arrays import Array
 
 __all__ = ["Cubics"]

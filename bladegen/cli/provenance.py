@@ -10,7 +10,7 @@ from pathlib import Path
 
 from bladegen.blade.blade import PATHS, Blade
 from bladegen.blade.planform import PLANES
-from bladegen.cli.texts import chord_share, finish
+from bladegen.cli.options.parsing import chord_share, finish
 from bladegen.errors import BladegenError
 from bladegen.exports.inventory import made_by
 from bladegen.exports.provenance import Provenance, blade_settings, content_of, made_from, word

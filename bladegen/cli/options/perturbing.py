@@ -80,7 +80,7 @@ class Changes:
         """Return the blade with the changes."""
         from math import radians
 
-        from bladegen.cli.texts import coordinates, span_window
+        from bladegen.cli.options.parsing import coordinates, span_window
 
         t = coordinates(self.pga or [])
         amounts = {key: float(getattr(self, key)) for key in AFFINE}

@@ -8,8 +8,8 @@ import numpy as np
 from bladegen.plots import style
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
-from bladegen.views.cameras import ANGLE, View, camera
-from bladegen.views.scene import Field
+from bladegen.views.rendering.cameras import ANGLE, View, camera
+from bladegen.views.rendering.scene import Field
 
 __all__ = [
     "HEADLIGHT",

@@ -9,8 +9,8 @@ from bladegen.errors import visible
 from bladegen.plots import style
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh, surface
-from bladegen.views.drawing import signed_distances
-from bladegen.views.scene import Field, Label, Layer, Scene
+from bladegen.views.rendering.drawing import signed_distances
+from bladegen.views.rendering.scene import Field, Label, Layer, Scene
 
 __all__ = [
     "DISTANCE",

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bladegen.airfoils.separation import graphs, ladders
+from bladegen.curves.separation import graphs, ladders
 from bladegen.support.arrays import Array
 
 __all__ = ["crossing_sections", "first_crossing"]

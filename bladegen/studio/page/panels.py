@@ -4,11 +4,11 @@ from collections.abc import Callable
 from html import escape
 from typing import Any
 
-from bladegen.studio.bar import bar, key
-from bladegen.studio.buttons import button, toggle
 from bladegen.studio.controls import AFFINE, END, START, Control
-from bladegen.studio.elements import number, stage
-from bladegen.studio.page import Page, Shown
+from bladegen.studio.page.bar import bar, key
+from bladegen.studio.page.buttons import button, toggle
+from bladegen.studio.page.elements import number, stage
+from bladegen.studio.page.tab import Page, Shown
 
 __all__ = ["build"]
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pyarrow import csv, parquet
 
-from bladegen.cli import texts
-from bladegen.cli.texts import coordinates, metres, radians, span_window
+from bladegen.cli.options import parsing
+from bladegen.cli.options.parsing import coordinates, metres, radians, span_window
 from bladegen.errors import BladegenError, FileError
 from bladegen.shapes.shape_space import ShapeSpace
 
@@ -59,7 +59,7 @@ def test_wrong_windows_are_refused(text):
 
 
 def test_bounds_are_read_twist_in_degrees():
-    bounds = texts.factor_bounds(["thickness=0.9:1.1", "twist=-2:2"])
+    bounds = parsing.factor_bounds(["thickness=0.9:1.1", "twist=-2:2"])
     assert bounds["thickness"] == (0.9, 1.1)
     assert_allclose(bounds["twist"], np.radians([-2, 2]))
 
@@ -67,7 +67,7 @@ def test_bounds_are_read_twist_in_degrees():
 @pytest.mark.parametrize("text", ["thickness", "thickness=1", "thickness=1:2:3", "t=a:b", "=", ""])
 def test_bounds_of_another_form_are_refused(text):
     with pytest.raises(BladegenError):
-        texts.factor_bounds([text])
+        parsing.factor_bounds([text])
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
@@ -76,7 +76,7 @@ def test_tables_are_read(tmp_path, suffix):
     columns = {"t1": [0.1, -0.2], "twist_deg": [1.0, 2.0], "name": ["a", "b"]}
     table = pa.table(columns)
     csv.write_csv(table, path) if suffix == ".csv" else parquet.write_table(table, path)
-    design = texts.factor_table(ShapeSpace.bundled(), path)
+    design = parsing.factor_table(ShapeSpace.bundled(), path)
     assert design.what.names == ("t1", "twist")
     assert_allclose(design.values, [[0.1, np.radians(1)], [-0.2, np.radians(2)]])
 
@@ -95,20 +95,20 @@ def test_tables_that_are_none_say_why(tmp_path, text, said):
     path = tmp_path / "plan.csv"
     path.write_text(text)
     with pytest.raises(BladegenError, match=said) as caught:
-        texts.factor_table(ShapeSpace.bundled(), path)
+        parsing.factor_table(ShapeSpace.bundled(), path)
     assert "plan.csv" in str(caught.value)
 
 
 def test_a_table_that_is_not_there_says_so(tmp_path):
     with pytest.raises(BladegenError, match="cannot be read"):
-        texts.factor_table(None, tmp_path / "none.csv")
+        parsing.factor_table(None, tmp_path / "none.csv")
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
 def test_tables_of_spreadsheets_are_read(tmp_path, encoding):
     path = tmp_path / "plan.csv"
     path.write_text("t1;twist_deg;name\n\n0,1;1,5;a\n\n-0,2;2;b\n", encoding=encoding)
-    design = texts.factor_table(ShapeSpace.bundled(), path)
+    design = parsing.factor_table(ShapeSpace.bundled(), path)
     assert_allclose(design.values, [[0.1, np.radians(1.5)], [-0.2, np.radians(2)]])
 
 
@@ -116,7 +116,7 @@ def test_tables_of_spreadsheets_are_read(tmp_path, encoding):
 def test_a_table_is_a_regular_file(tmp_path, name):
     os.mkfifo(tmp_path / name)
     with pytest.raises(FileError, match="is no regular file"):
-        texts.factor_table(None, tmp_path / name)
+        parsing.factor_table(None, tmp_path / name)
 
 
 @pytest.mark.parametrize(("text", "angle"), [("4", 4.0), ("-2.5deg", -2.5), (" 3 ° ", 3.0)])

@@ -12,9 +12,9 @@ from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
 from bladegen.surface.vtk_files import save
-from bladegen.views.blade_scene import scene_of
-from bladegen.views.cameras import VIEWS
-from bladegen.views.drawing import (
+from bladegen.views.rendering.blade_scene import scene_of
+from bladegen.views.rendering.cameras import VIEWS
+from bladegen.views.rendering.drawing import (
     add_colour_bar,
     add_lines,
     add_surface,
@@ -24,8 +24,8 @@ from bladegen.views.drawing import (
     poly,
     shaded,
 )
-from bladegen.views.renderer import image_of, quietly, require_renderer
-from bladegen.views.scene import Field, Scene
+from bladegen.views.rendering.renderer import image_of, quietly, require_renderer
+from bladegen.views.rendering.scene import Field, Scene
 
 __all__ = ["gallery", "picture", "save_image", "write_vtp"]
 

@@ -11,10 +11,10 @@ import bladegen
 PACKAGE = Path(bladegen.__file__).parent
 ROOMS = """errors version support curves airfoils shapes definition blade variants formats surface
 cad measures plots views exports families studio cli""".split()  # noqa: SIM905
-HEAVY = set(
-    """OCP PIL cadquery distributed fastapi h5py imageio_ffmpeg matplotlib neuralfoil nicegui numba
+HEAVY = {
+    *"""OCP PIL cadquery distributed fastapi h5py imageio_ffmpeg matplotlib neuralfoil nicegui numba
     openpyxl pyarrow pyvista ruamel scipy trimesh uvicorn vtkmodules zarr""".split()  # noqa: SIM905
-)
+}
 COMPILED = set("compiled workers plane_maps characteristics section_measures sizes kernels".split())  # noqa: SIM905
 TREES = {p: ast.parse(p.read_text(encoding="utf-8")) for p in sorted(PACKAGE.rglob("*.py"))}
 NAMES = {".".join(p.relative_to(PACKAGE.parent).with_suffix("").parts): p for p in TREES}
@@ -26,14 +26,11 @@ def imports(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            whole = [f"{node.module}.{alias.name}" for alias in node.names]
+            whole = (f"{node.module}.{alias.name}" for alias in node.names)
             yield from (name if name in NAMES else node.module for name in whole)
 
 
-INSIDE = {
-    name: {n for n in imports(TREES[path]) if n in NAMES and n != name}
-    for name, path in NAMES.items()
-}
+INSIDE = {n: (set(imports(TREES[p])) & set(NAMES)) - {n} for n, p in NAMES.items()}
 
 
 def room(name):
@@ -42,13 +39,17 @@ def room(name):
 
 @pytest.mark.parametrize("name", [n for n in NAMES if room(n) in ROOMS])
 def test_imports_lead_to_rooms_below(name):
-    below = ROOMS[: ROOMS.index(room(name)) + 1]
-    assert {room(other) for other in INSIDE[name]} <= set(below)
+    assert {room(other) for other in INSIDE[name]} <= {*ROOMS[: ROOMS.index(room(name)) + 1]}
     assert "importlib.import_module" not in ast.unparse(TREES[NAMES[name]])
 
 
-def test_no_modules_import_each_other():
-    graphlib.TopologicalSorter(INSIDE).prepare()
+@pytest.mark.parametrize("package", sorted({name.rpartition(".")[0] for name in NAMES}))
+def test_neither_modules_nor_packages_import_each_other(package):
+    part = {n: n.removeprefix(f"{package}.").split(".")[0] for n in NAMES if f"{package}." in n}
+    graph = graphlib.TopologicalSorter()
+    for name, child in part.items():
+        graph.add(child, *{part[other] for other in INSIDE[name] & set(part)} - {child})
+    graph.prepare()
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if n.split(".")[-1] not in COMPILED])

@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from collections import Counter
 
 import pytest
 from test_layers import HEAVY, NAMES, TREES, imports, room
@@ -35,6 +36,11 @@ def test_public_names_are_there_and_not_hidden_by_rooms():
     assert set(run(code).split()) == {"True"}
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = bladegen.nonsense
+
+
+def test_no_folder_holds_more_than_13_modules():
+    held = Counter(name.rpartition(".")[0] for name in NAMES if not name.endswith("__init__"))
+    assert {package for package, count in held.items() if count > 13} <= {"bladegen.blade"}
 
 
 def test_no_module_is_longer_than_300_lines():

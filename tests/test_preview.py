@@ -28,6 +28,22 @@ def test_a_picture_shows_the_blade(blade, tmp_path):
     assert np.count_nonzero(np.abs(image - station).max(axis=2) < 40) > 50
 
 
+def test_a_gallery_shows_each_blade_in_a_cell_of_its_own_as_the_camera_sees_it(blade):
+    eta = np.linspace(0.0, 1.0, 40)
+    small = blade.perturbed(chord=0.7).sections(eta)
+    shown = preview.gallery(
+        np.stack([blade.sections(eta), small, blade.sections(eta)]), columns=2, size=(800, 240)
+    )
+    inked = np.any(shown < 250, axis=2)
+    one, two = inked[:120, :400], inked[:120, 400:]
+    assert 0.1 < one.mean() < 0.6
+    assert 0.05 < two.mean() < 0.9 * one.mean()
+    assert np.abs(shown[120:, :400].astype(float) - shown[:120, :400]).mean() < 0.5
+    assert not inked[120:, 400:].any()
+    across = np.flatnonzero(one.any(axis=0))
+    assert across[-1] - across[0] > 300  # filled, from root to tip
+
+
 def test_a_blade_plots_itself_to_a_file_or_a_window(blade, tmp_path, monkeypatch):
     assert blade.plot(screenshot=tmp_path / "a.png") is None
     preview.picture(blade, tmp_path / "b.png")

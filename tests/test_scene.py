@@ -8,7 +8,7 @@ import bladegen as bg
 from bladegen.errors import RenderError
 from bladegen.surface import mesh
 from bladegen.views.rendering import blade_scene, scene
-from bladegen.views.rendering.cameras import ANGLE, VIEWS, View, camera
+from bladegen.views.rendering.cameras import ANGLE, VIEWS, View, camera, perspective
 from bladegen.views.rendering.drawing import cuts, polylines, shaded, signed_distances
 
 
@@ -95,7 +95,14 @@ def test_colours_reach_a_round_number_above_most_of_the_area(values, share):
 
 
 def test_a_page_takes_fewer_landmarks_and_keeps_ends_and_nose():
-    assert [blade_scene._step(n, 201) for n in (101, 201, 401, 801, 203, 403)] == [1, 1, 2, 4, 1, 1]
+    assert [blade_scene.thinning(n, 201) for n in (101, 201, 401, 801, 203, 403)] == [
+        1,
+        1,
+        2,
+        4,
+        1,
+        1,
+    ]
 
 
 @given(st.sampled_from(sorted(VIEWS)), st.floats(0.4, 4.0), st.integers(0, 1000))
@@ -113,6 +120,31 @@ def test_a_camera_sees_all_points_and_none_too_small(name, aspect, seed):
     place = seen / np.tan(np.radians(ANGLE / 2)) / np.reshape(depth, (-1, 1)) / [aspect, 1.0]
     assert np.abs(place).max() <= 1.0
     assert np.abs(place).max() > 0.85
+
+
+@given(st.floats(0.4, 4.0), st.integers(0, 1000))
+def test_perspective_shows_in_parallel_what_the_camera_sees(aspect, seed):
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(40, 3)) * [2.0, 3.0, 40.0]
+    view = VIEWS["oblique"]
+    eye, focus, up = camera(points, view, aspect)
+    towards = (eye - focus) / np.linalg.norm(eye - focus)
+    right = np.cross(up, towards)
+    right /= np.linalg.norm(right)
+    axes = np.stack([right, np.cross(towards, right), towards], axis=1)
+    there = (points - eye) @ axes
+    expected = there[:, :2] / -there[:, 2:] / np.tan(np.radians(ANGLE / 2))
+    seen = perspective(points, view, aspect)
+    found, normals = seen(points, np.broadcast_to(towards, points.shape))
+    assert_allclose(found[:, :2], expected, atol=1e-9)
+    assert_allclose(normals, np.broadcast_to([0.0, 0.0, 1.0], points.shape), atol=1e-12)
+    assert_allclose([found[:, 2].min(), found[:, 2].max()], [-1.0, 1.0], atol=1e-9)
+    nearer = np.argsort(there[:, 2])
+    assert np.all(np.diff(found[nearer, 2]) >= 0.0)
+    a, b = points[:2]
+    line = seen(np.linspace(a, b, 9), np.linspace(a, b, 9))[0]
+    along = (line - line[0]) @ (line[-1] - line[0]) / np.sum((line[-1] - line[0]) ** 2)
+    assert_allclose(line, line[0] + along[:, None] * (line[-1] - line[0]), atol=1e-9)
 
 
 def test_views_have_the_root_at_the_left_but_the_tips():

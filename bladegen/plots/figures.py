@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from bladegen.support.arrays import Array
 from bladegen.support.files import require_suffix
 
 __all__ = [
+    "DPI",
     "SUFFIXES",
     "draw_space",
     "dress",
@@ -29,6 +30,7 @@ __all__ = [
 ]
 
 SUFFIXES = (".png", ".svg", ".pdf")
+DPI = 150  # pixels an inch
 
 
 def figure(rows: int, columns: int, *, width: float, height: float) -> tuple[Any, Any]:
@@ -40,12 +42,14 @@ def figure(rows: int, columns: int, *, width: float, height: float) -> tuple[Any
     return drawn, axes
 
 
-def figure_of(width: float, height: float) -> Any:
+def figure_of(
+    width: float, height: float, *, layout: Literal["constrained"] | None = "constrained"
+) -> Any:
     """Return an empty matplotlib figure without any window, its size in inches."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    drawn = Figure(figsize=(width, height), layout="constrained")
+    drawn = Figure(figsize=(width, height), layout=layout)
     FigureCanvasAgg(drawn)
     return drawn
 
@@ -89,7 +93,7 @@ def save_figure(drawn: Any, path: Path) -> None:
         If the suffix is none of PNG, SVG and PDF.
     """
     require_suffix(path, SUFFIXES)
-    drawn.savefig(path, dpi=150)
+    drawn.savefig(path, dpi=DPI)
 
 
 def save_pages(figures: Iterable[Any], path: Path) -> None:

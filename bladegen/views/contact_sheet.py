@@ -8,7 +8,7 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import RenderError
-from bladegen.plots.figures import dress, figure_of, save_figure
+from bladegen.plots.figures import DPI, dress, figure_of, save_figure
 from bladegen.plots.style import BASELINE, INK, VARIANT
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.files import replacing
@@ -20,7 +20,10 @@ COLUMNS, ROWS = 3, 4
 OVERLAID = (0.15, 0.35, 0.6, 0.9)  # of the span: thick, transition, mid and outer sections
 MOST = 1000  # sections drawn at a span; of more variants every so many-th
 AT_ONCE = 64
-PICTURE = (2100, 720)  # pixels
+THINNED = 2  # every so many-th landmark of overlaid sections
+SIZE = (13.0, 8.4)  # inches
+PICTURES = (0.0, 0.44, 1.0, 0.5)  # of the sheet: left, bottom, width, height
+OVERLAYS = {"left": 0.045, "right": 0.99, "bottom": 0.06, "top": 0.4, "wspace": 0.16}
 
 
 def contact_sheet(
@@ -30,7 +33,7 @@ def contact_sheet(
 
     Parameters
     ----------
-    sections : (b, k, n, 3) array or Zarr array
+    sections : (b, k, n, 3) Zarr array
         All variants' sections [m], read a few at a time.
     names : list of str
         Of the variants.
@@ -50,45 +53,64 @@ def contact_sheet(
     """
     sound = np.flatnonzero(valid)
     first = sound[: COLUMNS * ROWS]
-    drawn = figure_of(13.0, 8.4)
-    upper, lower = drawn.subfigures(2, 1, height_ratios=[4.5, 3.6])
-    remark = ""
-    axis = upper.subplots()
-    axis.axis("off")
-    try:
-        shown = np.stack([np.asarray(sections[int(i)], dtype=np.float64) for i in first])
-        picture = preview.gallery(shown, [names[i] for i in first], columns=COLUMNS, size=PICTURE)
-        axis.imshow(picture)
-    except (RenderError, ValueError) as error:
-        remark = f"; without pictures ({error})" if len(first) else "; no variant is sound"
+    drawn = figure_of(*SIZE, layout=None)
     drawn.suptitle(
         f"{baseline.name}: {len(sound)} sound of {len(valid)} variants", color=INK, fontsize=12
     )
+    remark = _pictures(drawn, sections, names, first)
     spans = [int(np.argmin(np.abs(eta - wanted))) for wanted in OVERLAID]
     chosen = sound[:: max(1, -(-len(sound) // MOST))]
-    axes = lower.subplots(1, len(spans))
-    opacity = float(np.clip(12.0 / max(len(chosen), 1), 0.03, 0.5))
-    given = baseline.sections(eta[spans])
-    for span, axis, one in zip(spans, axes, given, strict=True):
-        dress(axis)
-        axis.set_title(f"eta = {eta[span]:.3f}", fontsize=9)
-        axis.plot(one[:, 1], one[:, 0], color=BASELINE, linewidth=1.4, zorder=3, label="baseline")
-        axis.set_aspect("equal", adjustable="datalim")
-        axis.set_xlabel("y, m", fontsize=8)
-        axis.tick_params(labelsize=7)
-    axes[0].set_ylabel("x, m", fontsize=8)
-    for part in _parts(sections, chosen, spans):
-        for place, axis in enumerate(axes):
-            lines = np.moveaxis(part[:, place, :, 1::-1], 0, -1)  # (n, 2, b): y, x
-            axis.plot(lines[:, 0], lines[:, 1], color=VARIANT, linewidth=0.5, alpha=opacity)
-    axes[0].legend(fontsize=7, loc="upper right")
+    _overlays(drawn, _parts(sections, chosen, spans), baseline, eta[spans], len(chosen))
     with replacing(path) as temporary:
         save_figure(drawn, temporary)
     return f"{len(chosen)} of {len(sound)} sound variants overlaid{remark}"
 
 
+def _pictures(drawn: Any, sections: Any, names: list[str], first: Indices) -> str:
+    """Draw the first variants above, with their names; say what is missing."""
+    axis = drawn.add_axes(PICTURES)
+    axis.axis("off")
+    width, height = (round(DPI * SIZE[i] * PICTURES[2 + i]) for i in (0, 1))
+    try:
+        shown = np.stack([np.asarray(sections[int(i)], dtype=np.float64) for i in first])
+        picture = preview.gallery(shown, columns=COLUMNS, size=(width, height))
+    except (RenderError, ValueError) as error:
+        return f"; without pictures ({error})" if len(first) else "; no variant is sound"
+    axis.imshow(picture, aspect="auto", interpolation="nearest")
+    rows = -(-len(first) // COLUMNS)
+    for place, one in enumerate(first.tolist()):
+        row, column = divmod(place, COLUMNS)
+        at = (column + 0.03) / COLUMNS, 1.0 - (row + 0.97) / rows
+        axis.text(*at, names[one], transform=axis.transAxes, color=INK, fontsize=7, va="bottom")
+    return ""
+
+
+def _overlays(drawn: Any, parts: Iterator[Array], baseline: Blade, eta: Array, count: int) -> None:
+    """Draw sections at some spans below, of all variants, with the baseline's."""
+    from matplotlib.collections import LineCollection
+
+    axes = drawn.subplots(1, len(eta), gridspec_kw=OVERLAYS)
+    opacity = float(np.clip(12.0 / max(count, 1), 0.03, 0.5))
+    for span, axis, one in zip(eta, axes, baseline.sections(eta), strict=True):
+        dress(axis)
+        axis.set_title(f"eta = {span:.3f}", fontsize=9)
+        axis.plot(one[:, 1], one[:, 0], color=BASELINE, linewidth=1.4, zorder=3, label="baseline")
+        axis.set_aspect("equal", adjustable="datalim")
+        axis.set_xlabel("y, m", fontsize=8)
+        axis.tick_params(labelsize=7)
+    axes[0].set_ylabel("x, m", fontsize=8)
+    for part in parts:
+        for place, axis in enumerate(axes):
+            lines = part[:, place, ::THINNED, 1::-1]  # (b, n, 2): y, x
+            axis.add_collection(
+                LineCollection(list(lines), colors=VARIANT, linewidths=0.5, alpha=opacity)
+            )
+    for axis in axes:
+        axis.autoscale_view()
+    axes[0].legend(fontsize=7, loc="upper right")
+
+
 def _parts(sections: Any, chosen: Indices, spans: list[int]) -> Iterator[Array]:
     """Read the chosen variants' sections at some spans, a few variants at a time."""
     for start in range(0, len(chosen), AT_ONCE):
-        some = chosen[start : start + AT_ONCE]
-        yield np.stack([np.asarray(sections[int(i)])[spans] for i in some])
+        yield np.asarray(sections.oindex[chosen[start : start + AT_ONCE], spans])

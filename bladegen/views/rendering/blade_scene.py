@@ -18,6 +18,7 @@ __all__ = [
     "caption",
     "mean_curvature",
     "scene_of",
+    "thinning",
 ]
 
 SECTIONS = 240
@@ -52,7 +53,7 @@ def scene_of(
         Of a section, at most; of more every second, fourth, ... is taken.
     """
     eta = blade.stations(max(sections, len(blade.eta) + 2))
-    step = _step(len(blade.u), landmarks)
+    step = thinning(len(blade.u), landmarks)
     grid = blade.sections(eta)[:, ::step]
     shown = surface(grid)
     fields = []
@@ -118,7 +119,7 @@ def _second(values: Array, grid: Array) -> Array:
     return np.concatenate([inner[:1], inner, inner[-1:]])
 
 
-def _step(count: int, most: int) -> int:
+def thinning(count: int, most: int) -> int:
     """Return 1, 2, 4, ...: every so-many-th of `count` landmarks, both ends and the middle kept."""
     step = 1
     while (count - 1) // step >= most and (count - 1) // step % 4 == 0:

@@ -129,18 +129,21 @@ def add_surface(
 
     It takes the place of what was added with the same name before.
     """
-    common = {"smooth_shading": True, "show_scalar_bar": False, "name": name, **QUIET}
+    common = {"smooth_shading": False, "show_scalar_bar": False, "name": name, **QUIET}
     if field is None:
-        return plotter.add_mesh(shown, color=style.SURFACE, scalars=None, **common, **PLAIN)
-    return plotter.add_mesh(
-        shown,
-        scalars=field.name,
-        cmap=field.colours,
-        clim=(field.low, field.high),
-        copy_mesh=True,
-        **common,
-        **COLOURED,
-    )
+        actor = plotter.add_mesh(shown, color=style.SURFACE, scalars=None, **common, **PLAIN)
+    else:
+        actor = plotter.add_mesh(
+            shown,
+            scalars=field.name,
+            cmap=field.colours,
+            clim=(field.low, field.high),
+            copy_mesh=True,
+            **common,
+            **COLOURED,
+        )
+    actor.prop.interpolation = "Phong"  # by the mesh's own normals; pyvista makes others
+    return actor
 
 
 def add_lines(

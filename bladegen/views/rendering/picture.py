@@ -1,6 +1,5 @@
 """Pictures of blades as PNG: one with three views to scale, many side by side, and one view."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,8 @@ from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
 from bladegen.surface.vtk_files import save
-from bladegen.views.rendering.blade_scene import scene_of
-from bladegen.views.rendering.cameras import VIEWS
+from bladegen.views.rendering.blade_scene import scene_of, thinning
+from bladegen.views.rendering.cameras import VIEWS, perspective
 from bladegen.views.rendering.drawing import (
     add_colour_bar,
     add_lines,
@@ -31,6 +30,8 @@ __all__ = ["gallery", "picture", "save_image", "write_vtp"]
 
 SIZE = (1920, 1080)
 VIEW, STRIP = 0.54, 0.23  # shares of a figure's height
+FAR = 1000.0  # half heights of a small picture: what shines then does so alike in all
+SMALL = 101  # landmarks of small pictures, about
 OBLIQUE = VIEWS["oblique"]
 
 
@@ -84,10 +85,11 @@ def save_image(image: Indices, path: Path) -> None:
     Image.fromarray(image).save(path, format="PNG", optimize=True)
 
 
-def gallery(
-    sections: Array, names: Sequence[str], *, columns: int, size: tuple[int, int]
-) -> Indices:
+def gallery(sections: Array, *, columns: int, size: tuple[int, int]) -> Indices:
     """Render blades given by their sections (b, k, n, 3) side by side, all seen alike.
+
+    They are one mesh in one view: each blade is brought to perspective first, then seen in
+    parallel, moved to its own cell, row by row from the upper left.
 
     Returns
     -------
@@ -103,18 +105,26 @@ def gallery(
 
     require_renderer()
     rows = -(-len(sections) // columns)
+    aspect = size[0] * rows / (size[1] * columns)
+    seen = perspective(sections[:, :, ::10].reshape(-1, 3), OBLIQUE, aspect)
     with quietly():
-        plotter = pv.Plotter(
-            off_screen=True, window_size=list(size), shape=(rows, columns), border=False
-        )
-        aspect = size[0] * rows / (size[1] * columns)
-        points = sections[:, :, ::10].reshape(-1, 3)
-        for place, (loops, name) in enumerate(zip(sections, names, strict=True)):
-            plotter.subplot(*divmod(place, columns))
-            dress(plotter)
-            add_surface(plotter, shaded(surface(loops)))
-            look(plotter, points, OBLIQUE, aspect)
-            plotter.add_text(name, position=(10, 6), font_size=8, color=INK)
+        shown = []
+        for place, loops in enumerate(sections[:, :, :: thinning(sections.shape[2], SMALL)]):
+            one = shaded(surface(loops))
+            row, column = divmod(place, columns)
+            cell = np.array([2.0 * column * aspect, -2.0 * row, 0.0])
+            points, normals = seen(np.asarray(one.points), np.asarray(one.point_normals))
+            one.points, one.point_data.active_normals = points + cell, normals
+            shown.append(one)
+        plotter = pv.Plotter(off_screen=True, window_size=list(size), border=False)
+        dress(plotter)
+        add_surface(plotter, pv.PolyData().append_polydata(*shown))
+        middle = np.array([(columns - 1) * aspect, 1.0 - rows, 0.0])
+        eye = middle + np.array([0.0, 0.0, FAR])
+        plotter.camera_position = [eye, middle, [0.0, 1.0, 0.0]]
+        plotter.enable_parallel_projection()
+        plotter.camera.parallel_scale = float(rows)
+        plotter.camera.clipping_range = FAR - 2.0, FAR + 2.0
         return image_of(plotter, "the gallery")
 
 

@@ -12,7 +12,8 @@ from pathlib import Path
 import yaml
 from figures import asked, figure, seconds
 
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.formats.windio.yaml_file import load_yaml
 
 RUNS = 15

@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from bladegen.errors import BladegenError, Finding
     from bladegen.exports.exporters import export
     from bladegen.families.family import Family, family
-    from bladegen.formats.reading import bundled, read
+    from bladegen.formats.bundled import bundled
+    from bladegen.formats.reading import read
     from bladegen.formats.writing import write, write_airfoil
     from bladegen.shapes.shape_space import ShapeSpace
 
@@ -51,7 +52,7 @@ _HOME = {
     "ShapeSpace": "shapes.shape_space",
     "Station": "definition.blade_definition",
     "Window": "blade.deformation",
-    "bundled": "formats.reading",
+    "bundled": "formats.bundled",
     "export": "exports.exporters",
     "family": "families.family",
     "read": "formats.reading",

@@ -16,7 +16,8 @@ from bladegen.blade.planform import normal_to_z
 from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import DefinitionError
 from bladegen.exports.exporters import export
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.measures.properties import volume
 from bladegen.shapes import affine
 from bladegen.shapes.shape_space import ShapeSpace

@@ -15,7 +15,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.interpolate import PchipInterpolator
 
 from bladegen.definition.blade_definition import BladeDefinition, Distribution, ReferenceAxis
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import Facts, bundled, facts
+from bladegen.formats.reading import read
 from bladegen.support.arrays import Array
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -229,6 +230,10 @@ def test_headers_name_source_licence_and_mends_and_no_place_on_a_machine(name):
 
 def test_the_bundled_names():
     assert bundled() == NAMES
+
+
+def test_what_is_listed_of_the_bundled_blades_is_what_they_hold():
+    assert facts() == {name: Facts.of(read(name)) for name in NAMES}
 
 
 def test_bundled_blades_are_found_in_an_installed_package_too(tmp_path):

@@ -10,7 +10,8 @@ from bladegen.blade.edges import AsGiven, Sharp
 from bladegen.cad import exchange, shapes, solids
 from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import CadError
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.measures import properties
 from bladegen.measures.checks import solid_figures
 from bladegen.surface.tips import round_tip

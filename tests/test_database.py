@@ -6,7 +6,8 @@ from bladegen.airfoils.landmarks import landmarks
 from bladegen.errors import FileError
 from bladegen.formats.airfoils.reading import airfoil_folder, read_airfoil, read_folder
 from bladegen.formats.baselines import baselines
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.shapes.database import build_space
 from bladegen.shapes.shape_space import ShapeSpace
 from strategies import naca

@@ -10,7 +10,8 @@ from bladegen.airfoils.landmarks import landmark_parameters
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import Sharp
 from bladegen.cad import solids
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.surface import deviation, ends, fitting, net
 from bladegen.surface.tips import flat_tip, on_arcs, round_tip
 

@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 
 from bladegen.blade.blade import Blade
 from bladegen.cad import exchange, solids
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.surface.mesh import TriangleMesh
 from bladegen.surface.tips import flat_tip, round_tip
 

@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import GeometryError
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.surface import mesh
 from bladegen.surface.grid import Spacing, from_blade
 from bladegen.surface.grid_files import welded

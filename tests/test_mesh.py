@@ -10,7 +10,8 @@ from bladegen.airfoils.landmarks import landmarks
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import GeometryError
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.surface import mesh, mesh_files
 from bladegen.surface.tips import flat_tip, on_arcs, round_tip
 from strategies import SEEDS, definitions, ellipse

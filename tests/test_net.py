@@ -5,7 +5,8 @@ from numpy.testing import assert_allclose
 
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.blade.blade import Blade
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.surface import fitting, net
 from bladegen.surface.fitting import fitted
 from strategies import SEEDS, definitions, ellipse, few

@@ -11,7 +11,8 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven
 from bladegen.blade.planform import normal_to_axis, normal_to_z
 from bladegen.definition.blade_definition import Distribution, ReferenceAxis
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.measures.properties import area_moments, volume
 from strategies import airfoils, ellipse
 

@@ -27,6 +27,14 @@ def test_light_commands_load_nothing_heavy():
     assert not set(run(code).split()) & HEAVY
 
 
+def test_the_list_of_blades_reads_none():
+    code = (
+        "import sys, bladegen.cli.commands as cli; cli.app(['list'], standalone_mode=False);"
+        "assert not {'numpy', 'yaml'} & set(sys.modules)"
+    )
+    assert "iea15mw" in run(code)
+
+
 def test_public_names_are_there_and_not_hidden_by_rooms():
     code = (
         "import bladegen.exports.build, bladegen.families.run, bladegen as bg;"

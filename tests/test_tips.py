@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 
 from bladegen.blade.blade import Blade
 from bladegen.cad import solids
-from bladegen.formats.reading import bundled, read
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
 from bladegen.surface.tips import arcs, flat_tip, on_arcs, round_tip
 from strategies import SEEDS, definitions
 

@@ -6,26 +6,25 @@ import typer
 
 from bladegen.cli.options.common import Airfoils, BladeName, Json
 from bladegen.cli.terminal import print_figures, print_findings, print_table
+from bladegen.formats.bundled import Facts, bundled, facts
 
 __all__ = ["info", "list_blades"]
 
 
 def list_blades() -> None:
     """List the bundled blades."""
-    from bladegen.formats.reading import bundled, read
-
-    rows = []
+    known, rows = facts(), []
     for name in bundled():
-        definition = read(name)
-        rows.append(
-            [
-                name,
-                definition.description,
-                f"{definition.length:.1f} m",
-                str(len({station.airfoil.name for station in definition.stations})),
-            ]
-        )
+        blade = known.get(name) or _read(name)
+        rows.append([name, blade.description, f"{blade.length:.1f} m", str(blade.airfoils)])
     print_table(["name", "blade", "length", "airfoils"], rows)
+
+
+def _read(name: str) -> Facts:
+    """Read what the list shows of a blade that is new."""
+    from bladegen.formats.reading import read
+
+    return Facts.of(read(name))
 
 
 def info(blade: BladeName, airfoils: Airfoils = None, as_json: Json = False) -> None:

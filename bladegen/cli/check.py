@@ -71,7 +71,8 @@ def check(
 
 def blade_of(file: str, airfoils: Path | None = None) -> Any:
     """Return the blade that a name or a definition means, None for other files."""
-    from bladegen.formats.reading import bundled, is_read
+    from bladegen.formats.bundled import bundled
+    from bladegen.formats.reading import is_read
     from bladegen.measures.foreign import MESHES, SOLIDS
 
     suffix = Path(file).suffix.lower()

@@ -8,12 +8,13 @@ from pathlib import Path
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.definition.plausibility import doubts
 from bladegen.errors import DefinitionError, FileError, Finding
+from bladegen.formats.bundled import bundled, home
 from bladegen.formats.common.document import Notes
 from bladegen.formats.format import Reader
 from bladegen.formats.registry import FORMATS, every, plugins
 from bladegen.support.arguments import path_of, shown, suggestion
 
-__all__ = ["SUFFIXES", "bundled", "holds_blade", "is_read", "read"]
+__all__ = ["SUFFIXES", "holds_blade", "is_read", "read"]
 
 RADIANS = ("windIO 1",)  # formats whose angles are in radians
 BY_AIRFOILS = Finding(
@@ -72,23 +73,11 @@ def holds_blade(path: Path) -> bool:
     return any(own in reader.suffixes and reader.recognises(path) for reader in OWN)
 
 
-def bundled() -> tuple[str, ...]:
-    """Return the names of the blades that come with bladegen."""
-    return tuple(sorted(path.stem for path in _home().glob("*.yaml")))
-
-
-def _home() -> Path:
-    """Return the folder of the bundled blades, in a wheel or in a checkout."""
-    package = Path(__file__).resolve().parent.parent
-    installed = package / "blades"
-    return installed if installed.is_dir() else package.parent / "blades"
-
-
 def _path(source: str | Path) -> Path:
     """Return the file that `source` names; only names that are listed become bundled paths."""
     names = bundled()
     if str(source) in names:
-        return _home() / f"{source}.yaml"
+        return home() / f"{source}.yaml"
     path = Path(source)
     try:
         folder, exists, is_file = path.is_dir(), path.exists(), path.is_file()

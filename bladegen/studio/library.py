@@ -19,11 +19,12 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import FileError, StudioError, visible
 from bladegen.families.identity import fingerprint
 from bladegen.formats.airfoils import reading as airfoil_files
+from bladegen.formats.bundled import bundled
 from bladegen.formats.hawc2 import reading as hawc2
 from bladegen.formats.openfast import reading as openfast
 from bladegen.formats.openfast.model import PART_SUFFIX
 from bladegen.formats.qblade import reading as qblade
-from bladegen.formats.reading import SUFFIXES, bundled, holds_blade, read
+from bladegen.formats.reading import SUFFIXES, holds_blade, read
 from bladegen.formats.registry import FORMATS
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.model import Baseline

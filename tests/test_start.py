@@ -35,6 +35,15 @@ def test_the_list_of_blades_reads_none():
     assert "iea15mw" in run(code)
 
 
+def test_the_figures_of_a_blade_load_no_part_of_numpy_that_they_do_not_need():
+    code = (
+        "import sys, bladegen.cli.commands as cli;"
+        "cli.app(['info', 'iea15mw'], standalone_mode=False);"
+        "assert not {'numpy.ma', 'numpy.random', 'scipy'} & set(sys.modules)"
+    )
+    assert "iea15mw" in run(code)
+
+
 def test_public_names_are_there_and_not_hidden_by_rooms():
     code = (
         "import bladegen.exports.build, bladegen.families.run, bladegen as bg;"

@@ -1,12 +1,14 @@
 """Figures as rows of text: what the command line and notebooks show of a blade."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bladegen.definition.blade_definition import BladeDefinition, Distribution
-from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array
+
+if TYPE_CHECKING:
+    from bladegen.shapes.shape_space import ShapeSpace
 
 __all__ = [
     "definition_figures",
@@ -179,7 +181,7 @@ def shown(value: Any) -> str:
     return str(value)
 
 
-def space_figures(space: ShapeSpace) -> dict[str, Any]:
+def space_figures(space: "ShapeSpace") -> dict[str, Any]:
     """Return what a shape space holds."""
     return {
         "about": space.about,
@@ -192,7 +194,7 @@ def space_figures(space: ShapeSpace) -> dict[str, Any]:
     }
 
 
-def space_rows(space: ShapeSpace) -> list[list[str]]:
+def space_rows(space: "ShapeSpace") -> list[list[str]]:
     """Return a row a principal direction: variance, and the range of the modes kept."""
     ratio = 100.0 * space.variance_ratio[:SHOWN_DIRECTIONS]
     kept = space.dimension

@@ -14,7 +14,7 @@ import numpy as np
 
 from bladegen.definition.blade_definition import SMALLEST_RISE, SMALLEST_STEP, Distribution
 from bladegen.errors import Finding
-from bladegen.support.arrays import Array, ArrayLike, Mask
+from bladegen.support.arrays import Array, ArrayLike, Indices, Mask
 
 __all__ = ["FRACTION", "Node", "Notes", "Range"]
 
@@ -189,9 +189,11 @@ class Node:
             self.finding("leaves 0 to 1 by rounding; cut")
         return cut
 
-    def _increase(self, values: Array, repeated: ArrayLike, least: float) -> bool:
+    def _increase(self, values: Array, repeated: Indices, least: float) -> bool:
         """Tell whether values increase but for `repeated` entries; say which do not."""
-        steps = np.setdiff1d(np.flatnonzero(~(np.diff(values) >= least)) + 1, repeated)
+        falls = ~(np.diff(values) >= least)
+        falls[repeated - 1] = False
+        steps = np.flatnonzero(falls) + 1
         self.each(steps, lambda i: f"got {values[i]:g} after {values[i - 1]:g}, must increase")
         return not steps.size
 

@@ -29,11 +29,12 @@ if TYPE_CHECKING:
         Station,
     )
     from bladegen.errors import BladegenError, Finding
+    from bladegen.exports.definitions import write
     from bladegen.exports.exporters import export
     from bladegen.families.family import Family, family
+    from bladegen.formats.airfoils.writing import write_airfoil
     from bladegen.formats.bundled import bundled
     from bladegen.formats.reading import read
-    from bladegen.formats.writing import write, write_airfoil
     from bladegen.shapes.shape_space import ShapeSpace
 
 getLogger(__name__).addHandler(NullHandler())  # who wants to hear more asks for it
@@ -56,7 +57,7 @@ _HOME = {
     "export": "exports.exporters",
     "family": "families.family",
     "read": "formats.reading",
-    "write": "formats.writing",
+    "write": "exports.definitions",
     "write_airfoil": "formats.airfoils.writing",
 }
 
@@ -90,7 +91,7 @@ _SERVICES = {  # what values offer, and the modules that do it
     "definition_html": "views.notebook",
     "export": "exports.exporters",
     "family_html": "views.notebook",
-    "plot_blade": "views.preview",
+    "plot_blade": "exports.pictures",
     "space_html": "views.notebook",
     "trimesh_of": "surface.mesh_files",
     "volume": "measures.properties",

@@ -5,12 +5,14 @@ import json
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from PIL import Image
 from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cad import shapes, solids
 from bladegen.cad.rotor import rotor_of
 from bladegen.cli import commands
+from bladegen.cli.options import common
 from bladegen.errors import ExportError, FamilyError
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
@@ -19,6 +21,7 @@ from bladegen.surface import fitting, mesh, mesh_files
 from bladegen.surface.grid import Spacing
 from bladegen.surface.grid import from_blade as grid_of
 from bladegen.surface.tips import flat_tip, round_tip
+from bladegen.views import preview
 from bladegen.views.rendering.blade_scene import scene_of
 
 FLIP = np.array([1.0, -1.0, 1.0])
@@ -135,3 +138,22 @@ def test_a_rotor_of_mirror_images_is_the_mirrored_rotor(blade, image):
     one, two = products[0].mesh, products[1].mesh
     assert_allclose(np.sort(two.vertices[:, 1]), np.sort(-one.vertices[:, 1]), atol=1e-12)
     assert rotor_of(image) == rotor_of(blade)  # its blades are mirrored already
+
+
+def test_views_show_the_mirror_image_and_its_baseline(blade, monkeypatch, tmp_path):
+    shown = []
+    monkeypatch.setattr(common.Making, "blade", lambda *_: blade)
+
+    def picture(*given, **named):
+        shown.append((given, named))
+        Image.new("RGB", (8, 8)).save(given[1])
+
+    monkeypatch.setattr(preview, "picture", picture)
+    words = ["preview", "iea15mw", "--mirror", "--twist", "1", "--screenshot"]
+    done = CliRunner().invoke(commands.app, [*words, str(tmp_path / "a.png")])
+    assert done.exit_code == 0, repr(done.exception)
+    ((one, _), named) = shown[0]
+    assert one.mirrored
+    assert named["baseline"].mirrored
+    assert named["baseline"].changes == ()
+    assert one.name == "iea15mw-perturbed-mirrored"

@@ -6,6 +6,8 @@ from PIL import Image
 
 import bladegen as bg
 from bladegen.errors import ExportError, RenderError
+from bladegen.exports import marks
+from bladegen.exports.provenance import made_from
 from bladegen.views import preview
 from bladegen.views.rendering.picture import _round_step
 
@@ -47,7 +49,9 @@ def test_a_gallery_shows_each_blade_in_a_cell_of_its_own_as_the_camera_sees_it(b
 def test_a_blade_plots_itself_to_a_file_or_a_window(blade, tmp_path, monkeypatch):
     assert blade.plot(screenshot=tmp_path / "a.png") is None
     preview.picture(blade, tmp_path / "b.png")
-    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    with Image.open(tmp_path / "a.png") as one, Image.open(tmp_path / "b.png") as two:
+        assert one.tobytes() == two.tobytes()
+    assert marks.read(tmp_path / "a.png") == made_from(blade, {})
     with pytest.raises(ExportError, match=r"screenshot: .*allowed are \.png"):
         blade.plot(screenshot=tmp_path / "a.jpg")
     asked = []

@@ -1,14 +1,18 @@
 """`bladegen list` and `bladegen info`: which blades there are, and what one's definition holds."""
 
 import json
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.options.common import Airfoils, BladeName, Json
+from bladegen.cli.options.common import Airfoils, Json
 from bladegen.cli.terminal import print_figures, print_findings, print_table
 from bladegen.formats.bundled import Facts, bundled, facts
 
 __all__ = ["info", "list_blades"]
+
+FACTS = ("blade", "source", "sha256", "definition", "command")
 
 
 def list_blades() -> None:
@@ -27,13 +31,32 @@ def _read(name: str) -> Facts:
     return Facts.of(read(name))
 
 
-def info(blade: BladeName, airfoils: Airfoils = None, as_json: Json = False) -> None:
-    """Show what a blade's definition holds."""
-    from bladegen.formats.reading import read
+def info(
+    blade: Annotated[
+        str,
+        typer.Argument(
+            metavar="BLADE",
+            help="A bundled blade's name, a definition's file, or any file that bladegen wrote.",
+        ),
+    ],
+    airfoils: Airfoils = None,
+    as_json: Json = False,
+) -> None:
+    """Show what a blade's definition holds.
+
+    Of any file that bladegen wrote it shows what it is made from.
+    """
+    from bladegen.formats.reading import holds_blade, is_read, read
     from bladegen.views.tables import definition_figures, station_rows
 
+    path = Path(blade)
+    made = None if blade in bundled() or not path.is_file() else _made_by(path)
+    if made is not None and not (is_read(path) and holds_blade(path)):
+        _print_making(blade, made, as_json)
+        return
     definition = read(blade, airfoils=airfoils)
     figures = definition_figures(definition)
+    figures |= {} if made is None else {"made_from": made.text}
     if as_json:
         typer.echo(json.dumps(figures, indent=2))
         return
@@ -44,3 +67,20 @@ def info(blade: BladeName, airfoils: Airfoils = None, as_json: Json = False) -> 
         title="stations",
     )
     print_findings(figures["findings"])
+
+
+def _made_by(path: Path) -> Any:
+    """Return what a file is made from, None if it does not tell."""
+    from bladegen.exports.inventory import made_by
+
+    return made_by(path)
+
+
+def _print_making(file: str, made: Any, as_json: bool) -> None:
+    """Print what a file that is no definition is made from."""
+    facts = {name: getattr(made, name) for name in ("version", *FACTS)} | dict(made.settings)
+    facts = {key: value for key, value in facts.items() if value} | {"id": made.id}
+    if as_json:
+        typer.echo(json.dumps({"file": file, "made_from": facts}, indent=2))
+    else:
+        print_figures(f"{file}: what it is made from", facts)

@@ -13,6 +13,7 @@ from bladegen.cli.options.common import (
     Formats,
     Landmarks,
     Making,
+    Mirror,
     Producing,
     Target,
     suffixes_of,
@@ -23,14 +24,6 @@ from bladegen.cli.terminal import print_summary, progress_bar
 from bladegen.errors import BladegenError
 
 __all__ = ["build", "perturb"]
-
-Mirror = Annotated[
-    bool,
-    typer.Option(
-        "--mirror",
-        help="The mirror image in all files: its rotor turns anticlockwise seen from upwind.",
-    ),
-]
 
 
 @grouped

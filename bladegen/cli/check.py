@@ -8,12 +8,14 @@ from typing import Annotated, Any
 import typer
 
 from bladegen.cli.options.common import MAKING, Airfoils, Json, ending_in
+from bladegen.cli.options.groups import COMMAND, grouped
 from bladegen.cli.terminal import print_figures, print_findings, print_table, progress_bar
 from bladegen.errors import BladegenError
 
 __all__ = ["blade_of", "check"]
 
 
+@grouped
 def check(
     file: Annotated[
         str, typer.Argument(metavar="FILE", help="A CAD or mesh file, or a blade definition.")
@@ -45,7 +47,7 @@ def check(
 
     blade = blade_of(file, airfoils)
     result = checks.check_file(Path(file)) if blade is None else checks.check_blade(blade)
-    made = None if blade is not None else made_by(Path(file))
+    made = made_by(Path(file if blade is None else blade.definition.source))
     if as_json:
         typer.echo(
             json.dumps(
@@ -86,7 +88,8 @@ def _compare(
 ) -> None:
     """Measure two surfaces against each other and print, or draw, what was found."""
     from bladegen.cli.provenance import alike
-    from bladegen.support.files import replacing
+    from bladegen.exports.marks import marked
+    from bladegen.exports.provenance import compared_of
     from bladegen.views.comparison import compared, draw, surface_of
 
     with progress_bar() as progress:
@@ -98,7 +101,9 @@ def _compare(
         found = compared(one, two)
         if screenshot is not None:
             progress("rendering")
-            with replacing(screenshot) as temporary:
+            with marked(
+                screenshot, compared_of(things[0], things[1], command=COMMAND.get())
+            ) as temporary:
                 draw(found, f"{file} against {other}", temporary)
     if as_json:
         said = {"source": file, "other": other, "note": "; ".join(found.notes), "made": differing}

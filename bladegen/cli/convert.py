@@ -6,11 +6,13 @@ from typing import Annotated, Any
 import typer
 
 from bladegen.cli.options.common import Airfoils, BladeName, Polars, Reynolds
+from bladegen.cli.options.groups import COMMAND, grouped
 from bladegen.cli.terminal import print_findings, print_table, progress_bar
 
 __all__ = ["convert"]
 
 
+@grouped
 def convert(
     source: BladeName,
     target: Annotated[
@@ -36,9 +38,9 @@ def convert(
 ) -> None:
     """Convert a blade between file formats, and say what the new one cannot hold."""
     from bladegen.errors import ExportError
-    from bladegen.formats.into import write_into
+    from bladegen.exports.definitions import write, write_into
     from bladegen.formats.reading import read
-    from bladegen.formats.writing import format_of, prepared, write
+    from bladegen.formats.writing import format_of, prepared
 
     if into is not None and to is not None:
         raise ExportError(
@@ -50,11 +52,13 @@ def convert(
         definition = read(source, airfoils=airfoils)
         ways: dict[str, Any] = {"polars": polars, "reynolds": reynolds, "progress": progress}
         if into is None:
-            findings, title = write(definition, target, format=row.name, **ways), row.title
+            findings = write(definition, target, format=row.name, command=COMMAND.get(), **ways)
+            title = row.title
         else:
             whole, said = prepared(definition, **ways)
             progress(f"writing {target}")
-            findings, title = said + write_into(whole, into, target), f"into {into}"
+            findings = said + write_into(whole, into, target, command=COMMAND.get())
+            title = f"into {into}"
     print_table(
         ["", "format", "file"],
         [["read", definition.format, definition.source], ["written", title, str(target)]],

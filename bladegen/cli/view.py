@@ -1,14 +1,23 @@
 """`bladegen preview` and `bladegen plot`: blades to look at."""
 
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from bladegen.cli.check import blade_of
-from bladegen.cli.options.common import LANDMARKS, MAKING, BladeName, Landmarks, Making, ending_in
-from bladegen.cli.options.groups import grouped
+from bladegen.cli.options.common import (
+    LANDMARKS,
+    MAKING,
+    BladeName,
+    Landmarks,
+    Making,
+    Mirror,
+    ending_in,
+)
+from bladegen.cli.options.groups import COMMAND, grouped
 from bladegen.cli.options.perturbing import NO_CHANGES, Changes
 from bladegen.cli.terminal import progress_bar, variants_bar
 from bladegen.errors import BladegenError
@@ -96,10 +105,11 @@ def preview(
     changes: Changes = NO_CHANGES,
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
+    mirror: Mirror = False,
 ) -> None:
     """Look at a blade: in a window, or as a picture, a page, a GIF or a film."""
     if compare is not None:
-        if blade is not None or gif is not None or mp4 is not None or changes.asked:
+        if blade is not None or gif is not None or mp4 is not None or changes.asked or mirror:
             raise BladegenError(
                 "compare: takes two files or blades, --screenshot or --html, and nothing else"
             )
@@ -107,14 +117,22 @@ def preview(
         return
     if blade is None:
         raise BladegenError("preview: name a blade (`bladegen list` shows the bundled ones)")
-    made = making.blade(blade, landmarks)
-    shown, baseline = (changes.applied(made), made) if changes.asked else (made, None)
+    shown, baseline = _shown(making.blade(blade, landmarks), changes, mirror)
     colouring = colour or (Colour.plain if baseline is None else Colour.distance)
     if gif is not None or mp4 is not None:
         _sweep(shown, changes.shape_space(), sweep or [], frames, gif, mp4)
     elif sweep is not None:
         raise BladegenError("sweep: needs --gif or --mp4")
     _show(shown, baseline, colouring.value, screenshot, html, window=gif is None and mp4 is None)
+
+
+def _shown(blade: Any, changes: Changes, mirror: bool) -> tuple[Any, Any]:
+    """Return what is shown, and the baseline of what is changed; both mirrored if asked for."""
+    shown, baseline = (changes.applied(blade), blade) if changes.asked else (blade, None)
+    if mirror:
+        baseline = None if baseline is None else baseline.mirror_image()
+        return shown.mirror_image(), baseline
+    return shown, baseline
 
 
 def _show(
@@ -127,18 +145,19 @@ def _show(
     window: bool,
 ) -> None:
     """Write the picture and the page that are asked for, or open a window if nothing is."""
-    from bladegen.support.files import replacing
+    from bladegen.exports.marks import marked
     from bladegen.views import page
     from bladegen.views import preview as view
     from bladegen.views.rendering.blade_scene import scene_of
 
+    made = _made(blade)
     if screenshot is not None:
-        with progress_bar() as progress, replacing(screenshot) as temporary:
+        with progress_bar() as progress, marked(screenshot, made) as temporary:
             progress("rendering")
             view.picture(blade, temporary, baseline=baseline, colour=colour)
         typer.echo(f"wrote {screenshot}")
     if html is not None:
-        with progress_bar() as progress, replacing(html) as temporary:
+        with progress_bar() as progress, marked(html, made) as temporary:
             progress("making the page")
             found = scene_of(blade, baseline, landmarks=page.LANDMARKS)
             page.write_page(found, temporary, colour=colour)
@@ -148,12 +167,19 @@ def _show(
         view.show(scene_of(blade, baseline), colour=colour)
 
 
+def _made(what: Any, **settings: str) -> Any:
+    """Return what a file is made from by this command."""
+    from bladegen.exports.provenance import made_from
+
+    return made_from(what, settings, COMMAND.get())
+
+
 def _sweep(
     blade: Any, space: Any, texts: list[str], count: int, gif: Path | None, mp4: Path | None
 ) -> None:
     """Render a sweep once and write it as asked."""
     from bladegen.cli.options.parsing import factor_bounds
-    from bladegen.support.files import replacing
+    from bladegen.exports.marks import marked
     from bladegen.views import sweep
     from bladegen.views.tables import megabytes
 
@@ -162,9 +188,11 @@ def _sweep(
         sweep.require_encoder(mp4)
     with variants_bar(count, "frames") as progress:
         images = list(sweep.frames(motion, progress=progress))
-    for path, write in ((gif, sweep.write_gif), (mp4, sweep.write_mp4)):
+    made = _made(blade, sweep=" ".join(texts), frames=str(count))
+    film = partial(sweep.write_mp4, about=made.text)
+    for path, write in ((gif, sweep.write_gif), (mp4, film)):
         if path is not None:
-            with replacing(path) as temporary:
+            with marked(path, made) as temporary:
                 write(images, temporary)
             typer.echo(f"wrote {path}: {count} frames, {megabytes(path.stat().st_size)}")
 
@@ -173,7 +201,8 @@ def _compare(
     one: str, other: str, screenshot: Path | None, html: Path | None, airfoils: Path | None
 ) -> None:
     """Show a surface coloured by its distance from another one."""
-    from bladegen.support.files import replacing
+    from bladegen.exports.marks import marked
+    from bladegen.exports.provenance import compared_of
     from bladegen.views import comparison
     from bladegen.views import preview as view
     from bladegen.views.page import write_page
@@ -181,17 +210,17 @@ def _compare(
     title = f"{one} against {other}"
     with progress_bar() as progress:
         progress("reading")
-        surfaces = [
-            comparison.surface_of(blade_of(name, airfoils) or Path(name)) for name in (one, other)
-        ]
+        things = [blade_of(name, airfoils) or Path(name) for name in (one, other)]
+        surfaces = [comparison.surface_of(thing) for thing in things]
+        made = compared_of(things[0], things[1], command=COMMAND.get())
         progress("measuring distances")
         found = comparison.compared(*surfaces)
         progress("drawing")
         if screenshot is not None:
-            with replacing(screenshot) as temporary:
+            with marked(screenshot, made) as temporary:
                 comparison.draw(found, title, temporary)
         if html is not None:
-            with replacing(html) as temporary:
+            with marked(html, made) as temporary:
                 write_page(comparison.scene(found, title), temporary, colour="distance")
     for note in found.notes:
         typer.echo(f"note: {note}")
@@ -221,6 +250,7 @@ def plot(
     changes: Changes = NO_CHANGES,
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
+    mirror: Mirror = False,
 ) -> None:
     """Draw diagrams of a blade.
 
@@ -228,9 +258,10 @@ def plot(
 
     A perturbed blade is drawn over its baseline.
     """
+    from bladegen.exports.marks import marked
     from bladegen.plots.blade_plots import PLOTS
     from bladegen.plots.figures import SUFFIXES, save_figure, save_pages
-    from bladegen.support.files import folder, replacing, require_suffix, safe_stem
+    from bladegen.support.files import folder, require_suffix, safe_stem
 
     wanted = list(dict.fromkeys(what or [What.all]))
     chosen = list(PLOTS) if What.all in wanted else [one.value for one in wanted]
@@ -242,13 +273,14 @@ def plot(
             f"output: got {output} for {len(chosen)} diagrams, must be a folder or a .pdf; or "
             "choose one with --what"
         )
-    made = making.blade(blade, landmarks)
-    shown, baseline = (changes.applied(made), made) if changes.asked else (made, None)
+    shown, baseline = _shown(making.blade(blade, landmarks), changes, mirror)
     with progress_bar() as progress:
         if single and output.suffix.lower() == ".pdf":
             progress("drawing")
-            with replacing(output) as temporary:
-                save_pages((PLOTS[name].draw(shown, baseline) for name in chosen), temporary)
+            by = _made(shown, diagrams=" ".join(chosen))
+            with marked(output, by) as temporary:
+                drawn = (PLOTS[name].draw(shown, baseline) for name in chosen)
+                save_pages(drawn, temporary, by.text)
             files = [output]
         else:
             stem = safe_stem(shown.name)
@@ -258,7 +290,8 @@ def plot(
             ]
             for name, file in zip(chosen, files, strict=True):
                 progress(f"drawing {name}")
-                with replacing(file) as temporary:
-                    save_figure(PLOTS[name].draw(shown, baseline), temporary)
+                by = _made(shown, diagrams=name)
+                with marked(file, by) as temporary:
+                    save_figure(PLOTS[name].draw(shown, baseline), temporary, by.text)
     for file in files:
         typer.echo(f"wrote {file}")

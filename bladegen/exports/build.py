@@ -172,9 +172,8 @@ def _rotor(rotor: Rotor, products: Products, stem: Path, ledger: Ledger) -> Prom
             products.made_from(Kind.triangles, ".glb"),
         )
     )
-    with ledger.timed("rotor"), replacing(made) as temporary:
+    with ledger.timed("rotor"), marks.marked(made, solid) as temporary:
         write_step(rotor, products.solid, temporary)
-        marks.put(temporary, solid)
     try:
         exporters.require_size(products, made)
     except PromiseError as error:

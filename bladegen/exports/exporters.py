@@ -138,9 +138,6 @@ def write(products: Products, path: Path) -> None:
     try:
         if row.kind is Kind.definition:
             row.write(products, target)
-            with replacing(target) as temporary:
-                temporary.write_bytes(target.read_bytes())
-                products.mark(temporary, row.kind, suffix)
         else:
             with replacing(target) as temporary:
                 row.write(products, temporary)

@@ -5,18 +5,19 @@ which lists each file with its settings.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 from bladegen.errors import BladegenError, Finding
 from bladegen.exports import marks
 from bladegen.exports.provenance import Provenance
-from bladegen.support.files import content_of, digest_of
+from bladegen.support.files import content_of, digest_of, replacing
 
-__all__ = ["REPORT", "entry_of", "made_by", "others"]
+__all__ = ["REPORT", "entry_of", "list_files", "made_by", "others"]
 
 REPORT = ".report.json"
+FOLDER_REPORT = f"airfoils{REPORT}"
 LARGEST_REPORT = 20_000_000  # bytes
 FACTS = {  # of a `Provenance`, by what they are called in a report
     "bladegen": "version",
@@ -39,6 +40,16 @@ def entry_of(path: Path, made: Provenance) -> dict[str, Any]:
     }
 
 
+def list_files(folder: Path, files: Iterable[Path], made: Provenance) -> None:
+    """List files that have no place for it in a report of their folder, beside those before."""
+    report = folder / FOLDER_REPORT
+    known = {name: told for name, told in _told(report).items() if (folder / name).is_file()}
+    known |= {file.name: entry_of(file, made) for file in files}
+    with replacing(report) as temporary:
+        said = {"files": [known[name] for name in sorted(known)]}
+        temporary.write_text(json.dumps(said, indent=2) + "\n", encoding="utf-8")
+
+
 def made_by(path: Path) -> Provenance | None:
     """Return what a file is made from, by its own words or those of a report beside it.
 
@@ -48,7 +59,8 @@ def made_by(path: Path) -> Provenance | None:
     if made is not None and not made.is_partial:
         return made
     for report in sorted(path.parent.glob(f"*{REPORT}")):
-        if path.name.startswith(report.name.removesuffix(REPORT)):
+        whole = report.name == FOLDER_REPORT
+        if whole or path.name.startswith(report.name.removesuffix(REPORT)):
             told = _told(report).get(path.name)
             if told is not None and told["sha256"] == digest_of(path):
                 return _provenance(told)

@@ -11,7 +11,6 @@ from typing import Any
 from bladegen.exports import marks
 from bladegen.exports.inventory import entry_of
 from bladegen.exports.provenance import Provenance
-from bladegen.support.files import replacing
 
 __all__ = ["Ledger"]
 
@@ -41,9 +40,8 @@ class Ledger:
     def writing(self, path: Path, stage: str, made: Provenance) -> Iterator[Path]:
         """Write a file under a temporary name within, mark it, and note it once it is whole."""
         self.progress(f"writing {path.name}")
-        with self.timed(stage), replacing(path) as temporary:
+        with self.timed(stage), marks.marked(path, made) as temporary:
             yield temporary
-            marks.put(temporary, made)
         self.note(path, made)
 
     def note(self, path: Path, made: Provenance) -> None:

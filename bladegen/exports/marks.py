@@ -13,24 +13,23 @@ import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from html import escape, unescape
 from pathlib import Path
 
-from bladegen.exports.provenance import Provenance
-from bladegen.support.files import beginning_of
+from bladegen.exports import picture_marks
+from bladegen.exports.provenance import NAME, Provenance
+from bladegen.exports.text_marks import Put, commented, named_columns, titled
+from bladegen.support.files import beginning_of, end_of, replacing
 
-__all__ = ["put", "read"]
+__all__ = ["marked", "put", "read"]
 
 STL_HEADER = 80  # bytes of free text at the start of a binary STL file
 HEAD = 1 << 20  # bytes of a file that are looked through, and of what a member unpacks to
 STEP_STRING = 200  # characters; ISO 10303-21 allows 256 in a header
 IGES_WIDTH = 72  # characters of a line before its section's letter and number
 BREP_WIDTH = 90  # characters; OCCT's reader takes lines of at most 99
-PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
-NAME = "bladegen"  # of entries that have one
-
-Put = Callable[[bytes, Provenance], bytes]
 
 
 def put(path: Path, made: Provenance) -> None:
@@ -38,6 +37,20 @@ def put(path: Path, made: Provenance) -> None:
     place = _PUT.get(path.suffix.lower())
     if place is not None:
         path.write_bytes(place(path.read_bytes(), made))
+
+
+@contextmanager
+def marked(path: Path, made: Provenance) -> Iterator[Path]:
+    """Give a temporary path to write a file to, which says what it is made from when it is whole.
+
+    Raises
+    ------
+    ExportError
+        If the file cannot be written.
+    """
+    with replacing(path) as temporary:
+        yield temporary
+        put(temporary, made)
 
 
 def read(path: Path) -> Provenance | None:
@@ -50,6 +63,8 @@ def read(path: Path) -> Provenance | None:
         text = _TEXTS.get(path.suffix.lower(), _plain)(head)
         if head and path.suffix.lower() in _PACKED:
             text = _packed(path)
+        if path.suffix.lower() in _ENDED:
+            text = picture_marks.ended(end_of(path, HEAD))
     except (OSError, ValueError, LookupError, EOFError, zlib.error, zipfile.BadZipFile):
         return None
     except (struct.error, NotImplementedError, RuntimeError):  # of zip files that are none
@@ -101,26 +116,6 @@ def _stl(content: bytes, made: Provenance) -> bytes:
     unit = dict(made.settings).get("unit", "m")
     header = made.short(unit, STL_HEADER).encode("ascii")
     return header.ljust(STL_HEADER) + content[STL_HEADER:]
-
-
-def _table(content: bytes, made: Provenance) -> bytes:
-    """Behind the row of names, which readers of tables take from the first line."""
-    if content.startswith(b"#"):
-        return f"# {made.text}\n".encode() + content
-    names, end, rows = content.partition(b"\n")
-    return names + end + f"# {made.text}\n".encode() + rows
-
-
-def _commented(mark: str) -> Put:
-    """Return what puts the line first, as a comment that begins with a mark."""
-    return lambda content, made: f"{mark} {made.text}\n".encode() + content
-
-
-def _aerodyn(content: bytes, made: Provenance) -> bytes:
-    """The second line of AeroDyn's files is free."""
-    first, _, rest = content.partition(b"\n")
-    end = b"\r\n" if first.endswith(b"\r") else b"\n"
-    return first + b"\n" + made.text.encode() + end + rest.partition(b"\n")[2]
 
 
 def _ply(content: bytes, made: Provenance) -> bytes:
@@ -180,13 +175,6 @@ def _vtk(content: bytes, made: Provenance) -> bytes:
     )
 
 
-def _png(content: bytes, made: Provenance) -> bytes:
-    at = len(PNG_SIGNATURE) + 25  # behind the header chunk
-    chunk = b"tEXt" + f"{NAME}\0{made.text}".encode("latin-1")
-    text = struct.pack(">I", len(chunk) - 4) + chunk + struct.pack(">I", zlib.crc32(chunk))
-    return content[:at] + text + content[at:]
-
-
 def _plain(head: bytes) -> str | None:
     return head.decode("latin-1")
 
@@ -225,21 +213,25 @@ def _packed(path: Path) -> str:
 
 
 _PACKED = {".3mf": "3D/3dmodel.model", ".xlsx": "docProps/core.xml"}
+_ENDED = (".pdf", ".mp4")
 _PUT: dict[str, Put] = {
     **dict.fromkeys((".step", ".stp"), _step),
     **dict.fromkeys((".iges", ".igs"), _iges),
     ".brep": _brep,
     ".stl": _stl,
-    **dict.fromkeys((".obj", ".yaml", ".yml"), _commented("#")),
-    ".csv": _table,
-    ".htc": _commented(";"),
-    ".dat": _aerodyn,
+    **dict.fromkeys((".obj", ".yaml", ".yml"), commented("#")),
+    ".csv": named_columns,
+    ".htc": commented(";"),
+    **dict.fromkeys((".dat", ".txt"), titled),
     ".ply": _ply,
     ".glb": _glb,
     ".3mf": _in_zip(_PACKED[".3mf"], _model),
     ".xlsx": _in_zip(_PACKED[".xlsx"], _core),
     **dict.fromkeys((".vtp", ".vtu"), _vtk),
-    ".png": _png,
+    ".png": picture_marks.png,
+    ".gif": picture_marks.gif,
+    ".svg": picture_marks.svg,
+    **dict.fromkeys((".html", ".htm"), picture_marks.page),
 }
 _TEXTS: dict[str, Callable[[bytes], str | None]] = {
     **dict.fromkeys((".step", ".stp"), _step_text),
@@ -247,6 +239,7 @@ _TEXTS: dict[str, Callable[[bytes], str | None]] = {
     ".brep": _brep_text,
     ".stl": lambda head: head[:STL_HEADER].decode("latin-1"),
     ".glb": _glb_text,
+    ".gif": picture_marks.gif_text,
     **dict.fromkeys((".vtp", ".vtu"), _vtk_text),
     **dict.fromkeys(_PACKED, lambda _: None),
 }

@@ -25,9 +25,19 @@ from bladegen.support.files import digest_of
 from bladegen.surface.tips import TIPS
 from bladegen.version import __version__
 
-__all__ = ["Provenance", "blade_settings", "content_of", "fingerprint", "made_from", "word"]
+__all__ = [
+    "NAME",
+    "Provenance",
+    "blade_settings",
+    "compared_of",
+    "content_of",
+    "fingerprint",
+    "made_from",
+    "word",
+]
 
 PLAIN = " ,.:+-_/()[]{}=*~!#@|?"  # beside letters and digits: what no format gives a meaning to
+NAME = "bladegen"  # of entries that have one
 ID_DIGITS = 8  # of a SHA-256
 LONE = ("change", "mirrored")  # settings that are there only if something is changed
 FACTS = ("blade", "source", "sha256", "definition", "command")
@@ -134,20 +144,36 @@ class Provenance:
         return pairs
 
 
-def made_from(blade: Blade, settings: Mapping[str, str], command: str = "") -> Provenance:
+def made_from(
+    what: Blade | BladeDefinition, settings: Mapping[str, str], command: str = ""
+) -> Provenance:
     """Return what a file is made from: a blade, and settings that matter to its kind."""
-    definition = blade.definition
+    definition = what if isinstance(what, BladeDefinition) else what.definition
+    how = {} if isinstance(what, BladeDefinition) else blade_settings(what)
     path = Path(definition.source)
     known = bool(definition.source) and path.is_file()
     return Provenance(
         __version__,
-        blade.name,
+        what.name,
         path.name if definition.source else "",
         digest_of(path) if known else "",
         content_of(definition),
         command,
-        tuple({**blade_settings(blade), **settings}.items()),
+        tuple({**how, **settings}.items()),
     )
+
+
+def compared_of(one: Blade | Path, other: Blade | Path, *, command: str) -> Provenance:
+    """Return what a picture of two things is made from: the one, its settings, and the other."""
+    first, second = (
+        Provenance(__version__, thing.name, thing.name, digest_of(thing))
+        if isinstance(thing, Path)
+        else made_from(thing, {})
+        for thing in (one, other)
+    )
+    told = {"against": second.source or second.blade, "against_sha256": second.sha256}
+    settings = first.settings + tuple((key, value) for key, value in told.items() if value)
+    return replace(first, command=command, settings=settings, id="")
 
 
 def content_of(definition: BladeDefinition) -> str:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from bladegen.cad import exchange
 from bladegen.errors import ExportError
+from bladegen.exports.definitions import marking
 from bladegen.exports.options import UNITS, Kind
 from bladegen.exports.products import Products
 from bladegen.formats import writing
@@ -136,6 +137,7 @@ def _write_definition(products: Products, path: Path) -> None:
         polars=options.polars,
         reynolds=options.reynolds,
         progress=products.progress,
+        mark=marking(products.made_from(Kind.definition, path.suffix.lower())),
     )
     products.remarks.extend(said)
     for remark in said:

@@ -1,20 +1,31 @@
 """A blade put back into a full model of a tool, everything else of which stays as it is."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import Finding
 from bladegen.formats.format import Format, PutBack
-from bladegen.formats.proof import put_in_place, read_back, taken_back
+from bladegen.formats.proof import (
+    Marking,
+    marked,
+    put_in_place,
+    read_back,
+    taken_back,
+    unmarked,
+)
 from bladegen.formats.registry import every
-from bladegen.support.files import require_suffix
+from bladegen.support.files import content_of, require_suffix
 
 __all__ = ["write_into"]
 
 YAML = ".yaml"
+LARGEST = 2**28  # bytes; the readers of models have lower bounds of their own
 
 
-def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[Finding, ...]:
+def write_into(
+    definition: BladeDefinition, turbine: Path, path: Path, mark: Marking = unmarked
+) -> tuple[Finding, ...]:
     """Write a model of a tool with its blade replaced, in the format that it is in.
 
     Parameters
@@ -26,6 +37,9 @@ def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[
         another format whose row in `registry` puts blades back.
     path : Path
         Where to; may be `turbine` itself.
+    mark : callable
+        Marks the files that were written, before they are read back; a model that is the same as
+        before to the byte stays so.
 
     Returns
     -------
@@ -42,12 +56,20 @@ def write_into(definition: BladeDefinition, turbine: Path, path: Path) -> tuple[
     own = turbine.suffix.lower()
     row, way = _way(own)
     require_suffix(path, way.suffixes if own in way.suffixes else (own,))
+    before = content_of(turbine, LARGEST) if turbine.is_file() else b""
+
+    def changed(files: Iterable[Path]) -> None:
+        mark(file for file in files if file.name != path.name or file.read_bytes() != before)
+
+    def write(target: Path) -> tuple[Finding, ...]:
+        return way.write(definition, turbine, target)
+
     if row.alone:
         with put_in_place(path) as draft:
-            said = way.write(definition, turbine, draft)
+            said = marked(write, draft, changed)
             return said + read_back(draft, path, definition, way.tolerance, turbine)
     with taken_back(path):
-        said = way.write(definition, turbine, path)
+        said = marked(write, path, changed)
         partly = any(finding.where == "aero" for finding in said)
         if partly or path.parent.resolve() != turbine.parent.resolve():
             return said  # names lead to files that are elsewhere

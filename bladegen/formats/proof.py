@@ -8,7 +8,7 @@ another blade by more than its format's tolerance is a finding with figures.
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,7 +21,16 @@ from bladegen.errors import BladegenError, ExportError, FileError, Finding
 from bladegen.formats.reading import read
 from bladegen.support.arrays import Array
 
-__all__ = ["compared", "proven", "put_in_place", "read_back", "taken_back"]
+__all__ = [
+    "Marking",
+    "compared",
+    "marked",
+    "proven",
+    "put_in_place",
+    "read_back",
+    "taken_back",
+    "unmarked",
+]
 
 LANDMARKS = 201
 SPANS = 16  # at which sections are compared, besides the middles between stations
@@ -29,10 +38,19 @@ MOST_SPANS = 60
 THIN = 4  # of the landmarks of the one blade, each is held against the other's section
 ANGLE = 1e-6  # rad; by more a twist may not be off without a word, beyond the format's tolerance
 Writing = Callable[[Path], tuple[Finding, ...]]
+Marking = Callable[[Iterable[Path]], None]  # gives files that are whole what they say of their make
+
+
+def unmarked(_: Iterable[Path]) -> None:
+    """Leave files as they were written."""
 
 
 def proven(
-    write: Writing, path: Path, definition: BladeDefinition, tolerance: float
+    write: Writing,
+    path: Path,
+    definition: BladeDefinition,
+    tolerance: float,
+    mark: Marking = unmarked,
 ) -> tuple[Finding, ...]:
     """Write a blade, read it back, compare, and only then give the files their names.
 
@@ -46,6 +64,8 @@ def proven(
         What the files shall hold.
     tolerance : float
         By which the format may be off [m].
+    mark : callable
+        Marks the files that were written, before they are read back.
 
     Returns
     -------
@@ -58,8 +78,17 @@ def proven(
         If the files cannot be written, or read back.
     """
     with put_in_place(path) as draft:
-        said = write(draft)
+        said = marked(write, draft, mark)
         return said + read_back(draft, path, definition, tolerance)
+
+
+def marked(write: Writing, path: Path, mark: Marking) -> tuple[Finding, ...]:
+    """Write a file and others beside it, and mark those that are new; return what `write` does."""
+    before = _beside(path)
+    said = write(path)
+    after = _beside(path)
+    mark(file for file in after if after[file] != before.get(file))
+    return said
 
 
 def read_back(
@@ -239,11 +268,21 @@ def _link(entry: Path, copy: Path) -> None:
 
 def _files(folder: Path) -> dict[Path, tuple[int, int]]:
     """Return a folder's files, and what changes when one is written anew."""
-    return {
-        file.relative_to(folder): (file.stat().st_ino, file.stat().st_mtime_ns)
-        for file in folder.rglob("*")
-        if file.is_file()
-    }
+    return {file.relative_to(folder): _state(file) for file in folder.rglob("*") if file.is_file()}
+
+
+def _beside(path: Path) -> dict[Path, tuple[int, int]]:
+    """Return a file and those that formats keep beside it, and what changes when one is new."""
+    if path.is_dir():
+        return {path / file: state for file, state in _files(path).items()}
+    entries = [path, *sorted(path.parent.glob(f"{_literal(path.stem)}_*"))]
+    inner = [e for entry in entries for e in (entry.iterdir() if entry.is_dir() else [entry])]
+    return {file: _state(file) for file in inner if file.is_file()}
+
+
+def _state(file: Path) -> tuple[int, int]:
+    """Return what changes when a file is written anew."""
+    return file.stat().st_ino, file.stat().st_mtime_ns
 
 
 def _moved(stage: Path, home: Path, before: dict[Path, tuple[int, int]], last: str) -> None:

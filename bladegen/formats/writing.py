@@ -12,7 +12,7 @@ from bladegen.formats import registry
 from bladegen.formats.airfoils.writing import write_airfoil
 from bladegen.formats.common.redefinition import redefined
 from bladegen.formats.format import Writer
-from bladegen.formats.proof import proven
+from bladegen.formats.proof import Marking, marked, proven, unmarked
 from bladegen.support.arguments import instance, path_of, suggestion
 from bladegen.support.files import require_suffix
 
@@ -36,6 +36,7 @@ def write(
     polars: str | None = None,
     reynolds: float | None = None,
     progress: Callable[[str], None] = lambda _: None,
+    mark: Marking = unmarked,
 ) -> tuple[Finding, ...]:
     """Write a blade to a file that other tools read.
 
@@ -54,6 +55,8 @@ def write(
         The Reynolds number of estimated polars.
     progress : callable
         Told what is being done.
+    mark : callable
+        Marks the files that were written, before they are read back.
 
     Returns
     -------
@@ -73,9 +76,10 @@ def write(
         what, polars=polars if row.polars else "keep", reynolds=reynolds, progress=progress
     )
     said = said if row.polars else ()
+    mark = mark if row in FORMATS else unmarked  # those of plug-ins stay as they are
     if row.tolerance is None:
-        return said + row.write(definition, path)
-    return said + proven(partial(row.write, definition), path, definition, row.tolerance)
+        return said + marked(partial(row.write, definition), path, mark)
+    return said + proven(partial(row.write, definition), path, definition, row.tolerance, mark)
 
 
 def prepared(

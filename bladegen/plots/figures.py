@@ -84,8 +84,17 @@ def titled(drawn: Any, blade: Blade, what: str, baseline: Blade | None = None) -
     return drawn
 
 
-def save_figure(drawn: Any, path: Path) -> None:
-    """Write a figure in the format of its suffix.
+def save_figure(drawn: Any, path: Path, about: str = "") -> None:
+    """Write a figure in the format of its suffix, without a time, the same bytes each time.
+
+    Parameters
+    ----------
+    drawn : matplotlib.figure.Figure
+        The figure.
+    path : Path
+        Where to.
+    about : str
+        The subject of a PDF.
 
     Raises
     ------
@@ -93,14 +102,24 @@ def save_figure(drawn: Any, path: Path) -> None:
         If the suffix is none of PNG, SVG and PDF.
     """
     require_suffix(path, SUFFIXES)
-    drawn.savefig(path, dpi=DPI)
+    from matplotlib import rc_context
+
+    with rc_context({"svg.hashsalt": "bladegen"}):
+        drawn.savefig(path, dpi=DPI, metadata=_described(path, about))
 
 
-def save_pages(figures: Iterable[Any], path: Path) -> None:
-    """Write figures as the pages of one PDF."""
+def _described(path: Path, about: str) -> dict[str, Any]:
+    """Return a figure's metadata: no time in any, a subject in a PDF."""
+    timeless: dict[str, dict[str, Any]] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    subject = {"Subject": about} if about and path.suffix.lower() == ".pdf" else {}
+    return timeless.get(path.suffix.lower(), {}) | subject
+
+
+def save_pages(figures: Iterable[Any], path: Path, about: str = "") -> None:
+    """Write figures as the pages of one PDF, of that subject."""
     from matplotlib.backends.backend_pdf import PdfPages
 
-    with PdfPages(path) as pages:
+    with PdfPages(path, metadata=_described(path, about)) as pages:
         for drawn in figures:
             pages.savefig(drawn)
 

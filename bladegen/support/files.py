@@ -22,6 +22,7 @@ __all__ = [
     "beginning_of",
     "content_of",
     "digest_of",
+    "end_of",
     "folder",
     "replacing",
     "require_end",
@@ -143,6 +144,16 @@ def beginning_of(path: Path, count: int) -> bytes:
     try:
         with _regular(path) as stream:
             return stream.read(count)
+    except FileError:
+        return b""
+
+
+def end_of(path: Path, count: int) -> bytes:
+    """Return the last `count` bytes of a regular file; none if it is no such file."""
+    try:
+        with _regular(path) as stream:
+            stream.seek(-min(count, stream.seek(0, os.SEEK_END)), os.SEEK_END)
+            return stream.read()
     except FileError:
         return b""
 

@@ -11,9 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from bladegen.blade.blade import Blade
-from bladegen.errors import RenderError
-from bladegen.support.arguments import path_of
-from bladegen.support.files import replacing, require_suffix
 from bladegen.views.rendering.blade_scene import scene_of
 from bladegen.views.rendering.picture import gallery, picture, write_vtp
 from bladegen.views.rendering.renderer import quietly, require_renderer, require_window
@@ -22,37 +19,25 @@ from bladegen.views.rendering.window import show
 __all__ = [
     "gallery",
     "picture",
-    "plot_blade",
     "quietly",
     "require_renderer",
     "require_window",
     "show",
+    "show_blade",
     "write_vtp",
 ]
 
 
-def plot_blade(
-    blade: Blade,
-    *,
-    baseline: Blade | None = None,
-    colour: str = "plain",
-    screenshot: str | Path | None = None,
-) -> None:
-    """Show a blade: as a PNG, a picture in a notebook, or a window.  For `Blade.plot`."""
-    shown: Any = {"baseline": baseline, "colour": colour}
-    if screenshot is not None:
-        target = path_of(screenshot, "screenshot", RenderError)
-        require_suffix(target, (".png",), "screenshot")
-        with replacing(target) as temporary:
-            picture(blade, temporary, **shown)
-    elif _in_notebook():
+def show_blade(blade: Blade, *, baseline: Blade | None = None, colour: str = "plain") -> None:
+    """Show a blade: as a picture in a notebook, or in a window."""
+    if _in_notebook():
         from IPython import display
 
         inline: Any = display
 
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "blade.png"
-            picture(blade, file, **shown)
+            picture(blade, file, baseline=baseline, colour=colour)
             inline.display(inline.Image(file.read_bytes()))
     else:
         show(scene_of(blade, baseline), colour=colour)

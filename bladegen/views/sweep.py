@@ -172,8 +172,8 @@ def require_encoder(path: Path) -> None:
         )
 
 
-def write_mp4(images: Sequence[Indices], path: Path, *, fps: int = FPS) -> None:
-    """Write images as an H.264 film that any player shows.
+def write_mp4(images: Sequence[Indices], path: Path, *, fps: int = FPS, about: str = "") -> None:
+    """Write images as an H.264 film that any player shows, with a comment about it.
 
     Raises
     ------
@@ -186,7 +186,12 @@ def write_mp4(images: Sequence[Indices], path: Path, *, fps: int = FPS) -> None:
 
     height, width, _ = images[0].shape
     writer = imageio_ffmpeg.write_frames(
-        str(path), (width, height), fps=fps, quality=7, macro_block_size=2
+        str(path),
+        (width, height),
+        fps=fps,
+        quality=7,
+        macro_block_size=2,
+        output_params=["-metadata", f"comment={about}"] if about else [],
     )
     writer.send(None)
     for image in images:

@@ -21,6 +21,7 @@ __all__ = [
     "Json",
     "Landmarks",
     "Making",
+    "Mirror",
     "Polars",
     "Producing",
     "Reynolds",
@@ -91,6 +92,13 @@ Formats = Annotated[
     ),
 ]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
+Mirror = Annotated[
+    bool,
+    typer.Option(
+        "--mirror",
+        help="The mirror image in all files: its rotor turns anticlockwise seen from upwind.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 SideSpacing = Annotated[
     float,

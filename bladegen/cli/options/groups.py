@@ -64,7 +64,7 @@ def _typed(name: str, parameters: list[inspect.Parameter], given: dict[str, Any]
         if value == parameter.default or parameter.name in UNTOLD:
             continue
         option = get_args(parameter.annotation)[1]
-        values = value if isinstance(value, list) else [value]
+        values = list(value) if isinstance(value, list | tuple) else [value]
         if isinstance(option, typer.models.ArgumentInfo):
             words += [Path(str(one)).name for one in values]
             continue
@@ -76,6 +76,9 @@ def _typed(name: str, parameters: list[inspect.Parameter], given: dict[str, Any]
             ),
             "--" + parameter.name.replace("_", "-"),
         )
+        if isinstance(value, tuple):  # of one option that takes several words
+            words += [said, *(Path(str(one)).name for one in values)]
+            continue
         for one in values:
             words += [said] if one is True else [said, Path(str(one)).name]
     return shlex.join(words)

@@ -2,9 +2,14 @@ import meshing
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+from OCP.IGESControl import IGESControl_Controller, IGESControl_Writer
+from OCP.Interface import Interface_Static
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
 
 from bladegen.blade.blade import Blade
 from bladegen.cad import exchange, shapes, solids
+from bladegen.cad.solids import Solid
 from bladegen.cad.triangles import triangulated
 from bladegen.errors import CadError
 from bladegen.formats.reading import read
@@ -79,3 +84,61 @@ def test_times_that_are_none_are_refused(solid, tmp_path, monkeypatch):
         with pytest.raises(CadError, match="SOURCE_DATE_EPOCH: got 999"):
             write(solid, tmp_path / "a")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture(scope="module")
+def box():
+    """A solid of 1 by 2 by 3 m."""
+    shape = BRepPrimAPI_MakeBox(1000.0, 2000.0, 3000.0).Shape()
+    return Solid(shape, (), None, None, 0.0, "box")
+
+
+@pytest.fixture
+def setting():
+    """Settings of OCCT, which belong to the process, and are put back."""
+    STEPControl_Controller.Init_s()
+    names = "write.step.unit", "xstep.cascade.unit"
+    before = [Interface_Static.CVal_s(name) for name in names]
+    yield Interface_Static.SetCVal_s
+    for name, value in zip(names, before, strict=True):
+        Interface_Static.SetCVal_s(name, value)
+
+
+@pytest.mark.parametrize("unit", ["INCH", "FT", "M", "CM", "MM", "UM"])
+def test_files_are_read_in_their_own_unit(box, tmp_path, setting, unit):
+    setting("write.step.unit", unit)
+    with exchange._quietly():
+        step = STEPControl_Writer()
+        step.Transfer(box.shape, STEPControl_AsIs)
+        step.Write(str(tmp_path / "a.step"))
+        IGESControl_Controller.Init_s()
+        iges = IGESControl_Writer(unit, exchange.SOLIDS_MODE)
+        iges.AddShape(box.shape)
+        iges.ComputeModel()
+        iges.Write(str(tmp_path / "a.iges"))
+    for name in ("a.step", "a.iges"):
+        shape = exchange.read(tmp_path / name)
+        assert shapes.quick_volume(shape) == pytest.approx(6e9, rel=1e-9)
+
+
+@pytest.mark.parametrize("suffix", [".step", ".iges"])
+def test_the_unit_of_others_in_the_process_changes_nothing(box, tmp_path, setting, suffix):
+    path = tmp_path / f"a{suffix}"
+    setting("xstep.cascade.unit", "M")
+    WRITERS[suffix](box, path)
+    within = shapes.quick_volume(exchange.read(path))
+    assert Interface_Static.CVal_s("xstep.cascade.unit") == "M"
+    setting("xstep.cascade.unit", "MM")
+    assert shapes.quick_volume(exchange.read(path)) == pytest.approx(6e9, rel=1e-9)
+    assert within == pytest.approx(6e9, rel=1e-9)
+
+
+def test_check_takes_a_file_in_inches_for_what_it_is(box, tmp_path, setting):
+    setting("write.step.unit", "INCH")
+    with exchange._quietly():
+        step = STEPControl_Writer()
+        step.Transfer(box.shape, STEPControl_AsIs)
+        step.Write(str(tmp_path / "a.step"))
+    figures = checks.check_file(tmp_path / "a.step").figures
+    assert figures["volume_m3"] == pytest.approx(6.0, rel=1e-9)
+    assert_allclose(figures["bounds_m"], [[0, 0, 0], [1, 2, 3]], atol=1e-6)

@@ -30,6 +30,7 @@ __all__ = [
 ]
 
 STEP_SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS"}  # and what OCCT calls them
+MEMORY_UNIT = "xstep.cascade.unit"  # what OCCT calls the unit of shapes in memory
 SOLIDS_MODE = 1  # of OCCT's IGES writer: manifold solids (entity 186), not loose trimmed faces
 
 
@@ -52,7 +53,7 @@ def write_step(
     from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
     from OCP.TCollection import TCollection_HAsciiString
 
-    with _quietly():
+    with _quietly(), _in_millimetres():
         STEPControl_Controller.Init_s()  # before it, the settings below have no effect
         for setting, value in (
             ("write.step.schema", STEP_SCHEMAS[schema]),
@@ -104,7 +105,7 @@ def write_iges(solid: Solid, path: Path, *, timestamp: str | None = None) -> Non
     from OCP.TCollection import TCollection_HAsciiString
 
     timestamp = timestamp or _source_date()
-    with _quietly():
+    with _quietly(), _in_millimetres():
         IGESControl_Controller.Init_s()
         writer = IGESControl_Writer("MM", SOLIDS_MODE)
         if not writer.AddShape(solid.shape):
@@ -136,7 +137,7 @@ def read_iges(path: Path) -> Any:
 
 def _transferred(control: Callable[[], Any], path: Path, what: str) -> Any:
     """Return the shape that a reader of OCCT's makes of a file."""
-    with _quietly():
+    with _quietly(), _in_millimetres():
         reader = control()
         if reader.ReadFile(str(path)).name != "IFSelect_RetDone" or not reader.TransferRoots():
             raise CadError(f"{path}: not {what} that OCCT can read")
@@ -226,6 +227,21 @@ def _source_date() -> str | None:
 def _ascii(text: str) -> str:
     """Return text as STEP files hold it."""
     return text.encode("ascii", "replace").decode("ascii")
+
+
+@contextmanager
+def _in_millimetres() -> Iterator[None]:
+    """Have OCCT take shapes in memory as millimetres, whatever else set it to in this process."""
+    from OCP.Interface import Interface_Static
+    from OCP.STEPControl import STEPControl_Controller
+
+    STEPControl_Controller.Init_s()  # before it, there is no such setting
+    before = Interface_Static.CVal_s(MEMORY_UNIT)
+    Interface_Static.SetCVal_s(MEMORY_UNIT, "MM")
+    try:
+        yield
+    finally:
+        Interface_Static.SetCVal_s(MEMORY_UNIT, before)
 
 
 @contextmanager

@@ -333,3 +333,52 @@ def test_closing_is_decided_alike_from_both_sides(thick, camber, half, sharp):
     there, back = ends(once), ends(once[::-1])
     assert there.closed == back.closed == sharp
     assert_array_equal(there.points, back.points[::-1])
+
+
+def columns(x):
+    """Both sides of a cambered airfoil over the same x: upper and lower y."""
+    half = 0.6 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    camber = 0.08 * x * (1 - x)
+    return camber + half, camber - half
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize("title", [[], ["x/c,upper,lower"]])
+@pytest.mark.parametrize("form", ["{:.8f} {:.8f} {:.8f}", "{:.8f},{:.8f},{:.8f}"])
+def test_both_sides_in_columns_are_a_contour(way, swapped, title, form):
+    x = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, 41))
+    upper, lower = columns(x)
+    table = np.stack([x, lower, upper] if swapped else [x, upper, lower], axis=1)[::way]
+    lines = [*title, *(form.format(*row) for row in table)]
+    assert tabulates(lines) is None
+    read = of_lines(lines, "a.csv")
+    wanted = np.concatenate([np.stack([x, upper], 1)[::-1], np.stack([x, lower], 1)[1:]])
+    wanted = wanted[:, :] if not swapped else wanted[::-1]
+    assert_allclose(read.points, wanted, atol=1e-8)
+    assert any(
+        "three columns are read as x, y of one side and y of the other" in s for s in read.said
+    )
+
+
+X = np.linspace(0.0, 1.0, 21)
+THREE = {  # what three columns may be else, and the line that is named
+    "camber and thickness": (np.stack([X, 0.1 * X * (1 - X), 0.12 * np.sqrt(X)], 1), 2),
+    "sides that cross": (np.stack([X, 0.1 * (0.5 - X), -0.1 * (0.5 - X)], 1), 2),
+    "x that turns": (np.stack([4 * X * (1 - X), *columns(X)], 1), 2),
+    "x to 0.7": (np.stack([0.7 * X, *columns(X)], 1), 2),
+    "sides apart at the nose": (np.stack([X, 0.1 + 0 * X, -0.1 * (1 - X)], 1), 2),
+    "lift and drag": (np.stack([X, 0.1 + 5 * X, 0.01 + X**2], 1), 2),
+}
+
+
+@pytest.mark.parametrize("name", THREE)
+def test_other_columns_are_one_error_with_file_and_line(name):
+    table, line = THREE[name]
+    lines = [" ".join(f"{value:.6f}" for value in row) for row in table]
+    with pytest.raises(FileError) as caught:
+        of_lines(lines, "a.dat")
+    said = str(caught.value)
+    assert said.startswith(f"a.dat: line {line}: got ")
+    assert "y of one side and y of the other" in said
+    assert "\n" not in said

@@ -4,7 +4,8 @@ Ahead of the first point a line may be a title or a count, and behind the last o
 blank lines and remarks (behind ! # % // ; * or in <tags>) stand between points; every other line
 is a point, or an error that names it.  Numbers may have Fortran's exponents (1.5D-03, 1.5-103)
 and decimal commas, divided by blanks, tabs, commas or semicolons, a remark behind them, and a
-third coordinate that is the same in all lines.
+third coordinate that is the same in all lines.  Three columns may also be x, y of one side and y
+of the other, which become one loop.
 """
 
 import re
@@ -17,12 +18,18 @@ from bladegen.errors import FileError
 from bladegen.formats.common.text_file import number
 from bladegen.support.arrays import Array
 
-__all__ = ["PointLines", "numbers_of", "point_lines"]
+__all__ = ["PointLines", "numbers_of", "point_lines", "two_sided"]
 
 SHOWN = 40  # letters of a line that a message shows
 SAME_Z = 1e-9  # of the largest coordinate
 FEW = 3  # lines passed over that are named
+ENDS = 0.02  # chords; by so much x of two sides may miss 0 and 1
+BLUNT = 0.05  # chords between two sides at x = 0, which meet there
 WORDS = 3  # of a damaged point at most; a text that begins with numbers has more
+THIRD = (
+    "must be x and y; a z must be the same in all lines, and of x, y of one side and y of the other "
+    "x must run from 0 to 1 with one side above the other"
+)
 _REMARK = re.compile(r"[!#%]|//")
 _WHOLE_REMARK = ("!", "#", "%", "//", ";", "*")
 _TAG = re.compile(r"\s*</?[A-Za-z][^<>]*>(.*</[A-Za-z]\w*>)?\s*")
@@ -95,10 +102,40 @@ def _table(found: "_Lines", said: list[str]) -> PointLines:
     if not found.rows:
         return PointLines(np.zeros((0, 2)), (), tuple(found.ahead), ())
     table = np.array([values for _, values in found.rows])
-    if table.shape[1] == 3:
-        said.append(f"z is {table[0, 2]:g} in all lines; dropped")
     at = tuple(k for k, _ in found.rows)
+    if two_sided(table):
+        said.append("three columns are read as x, y of one side and y of the other")
+        table, at = _loop_of(table, at)
+    elif table.shape[1] == 3:
+        said.append(f"z is {table[0, 2]:g} in all lines; dropped")
     return PointLines(table[:, :2], at, tuple(found.ahead), tuple(said))
+
+
+def two_sided(table: Array) -> bool:
+    """Tell whether rows (m, 3) are x, y of one side and y of the other.
+
+    Then x runs one way from 0 to 1, one side lies above the other all along and both meet at 0;
+    the lower one goes below 0, which camber and thickness, or lift and drag, do not.
+    """
+    if table.shape[1] != 3 or len(table) < FEW:
+        return False
+    x, one, other = table[np.argsort(table[:, 0])].T
+    steps = np.diff(table[:, 0])
+    ends = abs(x[0]) <= ENDS and abs(x[-1] - 1.0) <= ENDS
+    apart = one - other
+    above = bool(np.all(apart >= 0) or np.all(apart <= 0)) and np.abs(apart[:-1]).max() > 0
+    below = min(one.min(), other.min()) < 0
+    one_way = bool(np.all(steps > 0) or np.all(steps < 0))
+    return bool(one_way and ends and above and below and abs(apart[0]) <= BLUNT)
+
+
+def _loop_of(table: Array, at: tuple[int, ...]) -> tuple[Array, tuple[int, ...]]:
+    """Return two sides in columns as one loop, and the line of each point."""
+    order = np.argsort(table[:, 0])
+    table, lines = table[order], np.array(at)[order]
+    skipped = int(table[0, 1] == table[0, 2])  # the nose, where both sides have it
+    loop = np.concatenate([table[::-1, :2], table[skipped:, [0, 2]]])
+    return loop, tuple(np.concatenate([lines[::-1], lines[skipped:]]).tolist())
 
 
 def numbers_of(line: str) -> list[float] | None:
@@ -151,9 +188,9 @@ def _read(lines: Sequence[str], split: Split) -> _Lines:
     if found.rows and len(found.rows[0][1]) == 3:
         z = np.array([values for _, values in found.rows])
         varies = np.flatnonzero(np.abs(z[:, 2] - z[0, 2]) > SAME_Z * np.abs(z).max())
-        if varies.size:
+        if varies.size and not two_sided(z):
             k = found.rows[int(varies[0])][0]
-            raise _LineError(k, lines[k - 1], "must be x and y; a z must be the same in all lines")
+            raise _LineError(k, lines[k - 1], THIRD)
     return found
 
 

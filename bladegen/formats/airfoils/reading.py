@@ -15,7 +15,7 @@ import numpy as np
 
 from bladegen.errors import FileError, Finding
 from bladegen.formats.airfoils.contours import ContourError, contour, joined, sides
-from bladegen.formats.airfoils.point_lines import PointLines, numbers_of, point_lines
+from bladegen.formats.airfoils.point_lines import PointLines, numbers_of, point_lines, two_sided
 from bladegen.formats.common.text_file import number, read_lines
 from bladegen.support.arrays import Array
 
@@ -186,6 +186,8 @@ def tabulates(lines: Sequence[str]) -> str | None:
     rows = [row for row in values if len(row) > 1]
     if not rows:
         return None if values else NOTHING
+    if all(len(row) == 3 for row in rows) and two_sided(np.array(rows)):
+        return None
     width = max({len(row) for row in rows}, key=[len(row) for row in rows].count)
     first = np.array([row[0] for row in rows if len(row) == width])
     first = first[np.isfinite(first)]

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from bladegen.formats.airfoils.writing import write_airfoil
     from bladegen.formats.bundled import bundled
     from bladegen.formats.reading import read
+    from bladegen.parametric.model import ParametricBlade
     from bladegen.shapes.shape_space import ShapeSpace
 
 getLogger(__name__).addHandler(NullHandler())  # who wants to hear more asks for it
@@ -48,6 +49,7 @@ _HOME = {
     "Distribution": "definition.distribution",
     "Family": "families.family",
     "Finding": "errors",
+    "ParametricBlade": "parametric.model",
     "ReferenceAxis": "definition.blade_definition",
     "Rotor": "definition.blade_definition",
     "ShapeSpace": "shapes.shape_space",
@@ -70,6 +72,7 @@ __all__ = [
     "Distribution",
     "Family",
     "Finding",
+    "ParametricBlade",
     "ReferenceAxis",
     "Rotor",
     "ShapeSpace",

@@ -95,7 +95,7 @@ def task(name="iea15mw"):
     few = blade.u[:: (len(blade.u) - 1) // (COUNT - 1)]
     assert len(few) == COUNT
     values = np.ascontiguousarray(batch.features[..., :: (len(blade.u) - 1) // (COUNT - 1)])
-    return values, batch.coefficients(t), batch._target(AffineChange(), 8)
+    return values, batch.coefficients(t), batch.target(AffineChange(), 8)
 
 
 @given(airfoils(), st.floats(0.0, 0.02))

@@ -10,12 +10,15 @@ import bladegen
 
 PACKAGE = Path(bladegen.__file__).parent
 ROOMS = """errors version support curves airfoils shapes definition blade variants formats surface
-cad measures plots views exports families studio cli""".split()  # noqa: SIM905
+cad measures parametric plots views exports families studio cli""".split()  # noqa: SIM905
 HEAVY = {
     *"""OCP PIL cadquery distributed fastapi h5py imageio_ffmpeg matplotlib neuralfoil nicegui numba
     openpyxl pyarrow pyvista ruamel scipy trimesh uvicorn vtkmodules zarr""".split()  # noqa: SIM905
 }
-COMPILED = set("compiled workers plane_maps characteristics section_measures sizes kernels".split())  # noqa: SIM905
+COMPILED = {
+    *"""compiled workers plane_maps characteristics section_measures sizes kernels edge_slopes
+    section_slopes coefficient_kernels""".split()  # noqa: SIM905
+}
 TREES = {p: ast.parse(p.read_text(encoding="utf-8")) for p in sorted(PACKAGE.rglob("*.py"))}
 NAMES = {".".join(p.relative_to(PACKAGE.parent).with_suffix("").parts): p for p in TREES}
 

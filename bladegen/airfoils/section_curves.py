@@ -40,19 +40,6 @@ class SectionCurves:
 
     def normalising(self, relative_thickness: Array | None) -> tuple[Array, Array]:
         """Return the maps of `SectionSplines.normalising`."""
-        A, c, either = self._step(relative_thickness)
-        rows = np.flatnonzero(either)
-        for _ in range(ITERATIONS):  # away from noses that agree
-            if relative_thickness is None or not rows.size:
-                break
-            moved = self.take(rows).mapped(A[rows], c[rows])
-            B, d, either = moved._step(relative_thickness[rows])
-            A[rows], c[rows] = A[rows] @ B, (c[rows][:, None] @ B)[:, 0] + d
-            rows = rows[either]
-        return A, c
-
-    def _step(self, relative_thickness: Array | None) -> tuple[Array, Array, Mask]:
-        """Return the maps of `normalising`, exact but where either nose may lead, and where."""
         thickness = None if relative_thickness is None else self.thickness
         if thickness is not None and not bool(np.all(thickness > 0.0)):
             raise GeometryError(
@@ -65,12 +52,11 @@ class SectionCurves:
             thickness,
             relative_thickness,
         )
-        either = np.zeros(len(self.points), dtype=bool)
         rows = np.flatnonzero(self.has_rivals | passed)
         if relative_thickness is not None and rows.size:
-            B, d, moved, either[rows] = self.take(rows).shared(relative_thickness[rows])
+            B, d, moved = self.take(rows).shared(relative_thickness[rows])
             A[rows[moved]], c[rows[moved]] = B[moved], d[moved]
-        return A, c, either
+        return A, c
 
     def mapped(self, A: Array, c: Array) -> "SectionCurves":
         """Return the sections ``points @ A + c``, for maps (k, 2, 2) and (k, 2)."""
@@ -183,15 +169,15 @@ class SectionCurves:
         axes = np.stack([along, np.stack([-along[:, 1], along[:, 0]], axis=-1)], axis=-1)
         return SectionCurves(self.u, self.points @ axes, self.slopes @ axes)
 
-    def shared(self, relative_thickness: Array) -> tuple[Array, Array, Mask, Mask]:
+    def shared(self, relative_thickness: Array) -> tuple[Array, Array, Mask]:
         """Return the maps of `resizing` where two noses may share the leading edge.
 
-        Returned besides is where they differ from those of the present leading edge, and where
-        either nose may lead though they share the edge now.
+        Returned besides is where they differ from those of the present leading edge.
 
         The stretch moves noses away from the chord line, or towards it, so that their distances
         depend on where the line runs between them, and it runs where their distances say: its
-        place is found by the signs of the difference.
+        place is found by the signs of the difference.  Where either nose may lead, the one does
+        that is farther now.
         """
         noses = np.stack(self._noses)
 
@@ -205,11 +191,13 @@ class SectionCurves:
             return SectionCurves._stretched(*some, lead(place, rows))[-1]
 
         place, either = bracketed(excess, len(self.points), EVEN)
-        either &= self.has_rivals
+        place = np.where(
+            either, np.where(self._reach(noses[0]) < self._reach(noses[1]), 1.0, 0.0), place
+        )
         start = lead(place, np.arange(len(place)))
         normal, stretch, reach, _ = self._stretched(noses, relative_thickness, start)
-        moved = ~either & (self.has_rivals | (place > 0.0))
-        return *stretching(start, normal, stretch, reach), moved, either
+        moved = self.has_rivals | (place > 0.0)
+        return *stretching(start, normal, stretch, reach), moved
 
     def _stretched(
         self, noses: Array, relative_thickness: Array, lead: Array

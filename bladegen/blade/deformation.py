@@ -7,6 +7,7 @@ paper's affine parameters are an `affine_change.AffineChange`; a `window.Window`
 the span they act.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ import numpy as np
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.affine_change import RANGES, AffineChange, Thickening, faded, in_units
 from bladegen.blade.window import Window
-from bladegen.definition.blade_definition import Distribution
+from bladegen.definition.blade_definition import Distribution, Interpolant, pchip
 from bladegen.errors import PerturbationError
 from bladegen.shapes import grassmann
 from bladegen.shapes.domain import BEYOND
@@ -46,10 +47,13 @@ class Coordinates:
         Span fractions of the knots, increasing; one knot means the same everywhere.
     values : (m, r) array
         Coordinates there [rad]; the end values hold beyond.
+    spline : callable, optional
+        Joins them, as that of a `Distribution`: PCHIP by default.
     """
 
     grid: Array
     values: Array
+    spline: Callable[[Array, Array], Interpolant] = pchip
 
     def __post_init__(self) -> None:
         what = "coordinates over span"
@@ -93,7 +97,7 @@ class Coordinates:
         """Return coordinates (k, r) at span fractions (k,)."""
         if len(self.grid) == 1:
             return np.broadcast_to(self.values, (len(eta), self.values.shape[1]))
-        columns = [Distribution(self.grid, column)(eta) for column in self.values.T]
+        columns = [Distribution(self.grid, column, self.spline)(eta) for column in self.values.T]
         return np.stack(columns, axis=-1)
 
 

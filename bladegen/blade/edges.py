@@ -70,6 +70,15 @@ class MinimumThickness:
         least: Array = self.thickness / chord
         return least if self.most is None else np.minimum(least, self.most)
 
+    def width_slope(self, chord: Array) -> Array:
+        """Return the derivative of `width` in the chord, (...); where the two meet, that of `most`.
+
+        [1/m].
+        """
+        least = self.thickness / chord
+        capped = np.zeros(least.shape, dtype=bool) if self.most is None else least >= self.most
+        return np.where(capped, 0.0, -least / chord)
+
     def require_room(self, thickness: Array, chord: Array) -> None:
         """See that sections are thicker than their edges shall be.
 

@@ -56,14 +56,14 @@ def normal_to_axis(axis: ReferenceAxis) -> Frames:
         From span fractions (k,) to frames (k, 3, 3), whose rows are the unit vectors of the
         section's x, its y and the axis' tangent.
     """
-    grid = np.union1d(np.linspace(0.0, 1.0, FRAME_STEPS + 1), axis.z.grid)
+    grid = frame_grid(axis)
     tangents = _tangents(axis, grid)
-    steps = _turn(np.concatenate([[[0.0, 0.0, 1.0]], tangents[:-1]]), tangents)
-    carried = _running_product(steps)
+    steps = turn(np.concatenate([[[0.0, 0.0, 1.0]], tangents[:-1]]), tangents)
+    carried = running_product(steps)
 
     def frames(eta: Array) -> Array:
         i = np.clip(np.searchsorted(grid, eta, side="right") - 1, 0, len(grid) - 1)
-        return carried[i] @ _turn(carried[i, 2], _tangents(axis, eta))
+        return carried[i] @ turn(carried[i, 2], _tangents(axis, eta))
 
     return frames
 
@@ -71,7 +71,12 @@ def normal_to_axis(axis: ReferenceAxis) -> Frames:
 PLANES: dict[str, SectionPlanes] = {"axis": normal_to_axis, "z": normal_to_z}
 
 
-def _running_product(matrices: Array) -> Array:
+def frame_grid(axis: ReferenceAxis) -> Array:
+    """Return the span fractions at which frames are carried along an axis, (m,)."""
+    return np.union1d(np.linspace(0.0, 1.0, FRAME_STEPS + 1), axis.z.grid)
+
+
+def running_product(matrices: Array) -> Array:
     """Return the products of the first 1, 2, 3, ... matrices, in log2(k) batched steps."""
     product, reach = matrices.copy(), 1
     while reach < len(product):
@@ -81,22 +86,34 @@ def _running_product(matrices: Array) -> Array:
 
 
 def _tangents(axis: ReferenceAxis, eta: Array) -> Array:
+    along = direction(axis, eta)
+    unit: Array = along / np.linalg.norm(along, axis=-1, keepdims=True)
+    return unit
+
+
+def direction(axis: ReferenceAxis, eta: Array) -> Array:
+    """Return the axis' derivative (..., 3) over span, nowhere zero; beyond its ends, as there."""
     start, end = axis.z.grid[0], axis.z.grid[-1]
     along = axis(np.clip(eta, start, end), 1)
     still = ~np.any(along, axis=-1, keepdims=True)
     if still.any():  # monotone splines may start from rest: the direction just inside holds
         inside = np.clip(eta, start + AT_REST * (end - start), end - AT_REST * (end - start))
         along = np.where(still, axis(inside, 1), along)
-    unit: Array = along / np.linalg.norm(along, axis=-1, keepdims=True)
-    return unit
+    return along
 
 
-def _turn(start: Array, end: Array) -> Array:
+def turn(start: Array, end: Array) -> Array:
     """Return the smallest rotation that takes unit vectors `start` to `end`, acting on rows."""
-    v = np.cross(start, end)
     c = np.sum(start * end, axis=-1)[..., None, None]
+    cross = crossing(np.cross(start, end))
+    rotation: Array = np.eye(3) + cross + cross @ cross / (1.0 + c)
+    return rotation
+
+
+def crossing(v: Array) -> Array:
+    """Return the matrices (..., 3, 3) whose product from the right is that with vectors v."""
     zero = np.zeros(v.shape[:-1])
-    cross = np.stack(
+    matrices: Array = np.stack(
         [
             np.stack([zero, v[..., 2], -v[..., 1]], axis=-1),
             np.stack([-v[..., 2], zero, v[..., 0]], axis=-1),
@@ -104,8 +121,7 @@ def _turn(start: Array, end: Array) -> Array:
         ],
         axis=-2,
     )
-    rotation: Array = np.eye(3) + cross + cross @ cross / (1.0 + c)
-    return rotation
+    return matrices
 
 
 @dataclass(frozen=True, eq=False)

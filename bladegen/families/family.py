@@ -29,12 +29,12 @@ from bladegen.variants.batch import SectionBatch
 from bladegen.variants.designs import Design
 from bladegen.variants.draws import Seed
 from bladegen.variants.factors import factors
+from bladegen.variants.verdicts import THINNEST
 
 __all__ = ["BLOCK", "POLICIES", "Family", "family"]
 
 BLOCK = 64  # variants made at once; what a run may lose
 TRIES = 1000  # draws of one variant before it is kept and marked
-THINNEST = 0.05  # of the chord; a thinner section is no blade's
 SPANS = 100
 POLICIES = ("redraw", "keep")
 

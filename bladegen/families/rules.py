@@ -1,13 +1,15 @@
 """What is wrong with variants of a family: bounds, data, faults of sections, oddities."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from bladegen.blade.deformation import AffineChange
 from bladegen.support.arrays import Array, Indices, Mask
-from bladegen.variants.batch import FAULTS, SectionBatch
+from bladegen.variants.batch import SectionBatch
 from bladegen.variants.factors import Factors
+from bladegen.variants.verdicts import leaving, strayed, unsound
 
 __all__ = ["Rules"]
 
@@ -50,38 +52,24 @@ class Rules:
 
     def left(self, values: Array) -> Mask:
         """Tell which variants (b, d) have a section that leaves the space's data, (b,)."""
-        domain, t = self.sections.domain, self.split(values)[0]
-        if domain is None or self.allow_extrapolation:
+        if self.allow_extrapolation:
             return np.zeros(len(values), dtype=bool)
-        left: Mask = np.any(domain.left(self.sections.step(t)), axis=1)
-        return left
+        return leaving(self.sections, self.split(values)[0])
 
     def _strayed(self, values: Array) -> list[str]:
         """Say which variants (b, d) leave their bounds or the space's data; "" if none does."""
         reasons = self.what.outside(values)
-        domain, t = self.sections.domain, self.split(values)[0]
-        if domain is not None:
-            for row in np.flatnonzero(self.left(values)):
-                reasons[row] = reasons[row] or domain.said(self.sections.step(t[row : row + 1])[0])
-        return reasons
+        if self.allow_extrapolation:
+            return reasons
+        return _first(reasons, strayed(self.sections, self.split(values)[0]))
 
     def reasons(self, values: Array, faults: Indices, thickness: Array, looks: Array) -> list[str]:
         """Say what is wrong with variants (b, d), first thing first; "" if nothing is."""
-        reasons, eta = self._strayed(values), self.sections.eta
-        for row in np.flatnonzero(faults.any(axis=1)):
-            k = int(np.argmax(faults[row] > 0))
-            reasons[row] = reasons[row] or f"{FAULTS[faults[row, k]]} at eta = {eta[k]:.4f}"
-        for row in np.flatnonzero(thickness.min(axis=1) < self.thinnest):
-            k = int(np.argmin(thickness[row]))
-            reasons[row] = reasons[row] or (
-                f"relative thickness {thickness[row, k]:.4f} at eta = {eta[k]:.4f} is below "
-                f"{self.thinnest:g}"
-            )
-        if self.allow_odd:
-            return reasons
-        odd = self.sections.oddities(looks)
-        for place in np.flatnonzero(odd.kinds.any(axis=1)).tolist():
-            k = int(np.argmax(odd.kinds[place] > 0))
-            said = f"{odd.said((place, k))} at eta = {eta[k]:.4f}"
-            reasons[place] = reasons[place] or said
-        return reasons
+        how: dict[str, Any] = {"thinnest": self.thinnest, "allow_odd": self.allow_odd}
+        found = unsound(self.sections, faults, thickness, looks, **how)
+        return _first(self._strayed(values), found)
+
+
+def _first(reasons: list[str], others: list[str]) -> list[str]:
+    """Return the reason of each variant, or where there is none the other."""
+    return [one or other for one, other in zip(reasons, others, strict=True)]

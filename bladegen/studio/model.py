@@ -14,7 +14,6 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.blade.deformation import AffineChange, Window
 from bladegen.blade.sanity import KINDS
-from bladegen.families.family import THINNEST
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.controls import AFFINE
 from bladegen.studio.scene import Check, Curves, Scene
@@ -22,6 +21,7 @@ from bladegen.studio.state import State
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.files import safe_stem
 from bladegen.variants.batch import FAULTS, Batch, SectionBatch
+from bladegen.variants.verdicts import THINNEST
 
 __all__ = ["Baseline", "changes"]
 

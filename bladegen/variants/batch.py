@@ -21,7 +21,7 @@ from bladegen.curves.crossing import crossing_sections
 from bladegen.shapes import affine
 from bladegen.shapes.domain import Domain
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.support.arrays import Array, Indices, readonly
+from bladegen.support.arrays import Array, Indices, Mask, readonly
 from bladegen.variants.features import Features
 from bladegen.variants.members import CROSSING, FAULTS, SOUND, THIN, TURNED, Batch
 from bladegen.variants.placing import Placing, column
@@ -63,30 +63,33 @@ class SectionBatch:
     def within(self, window: Window) -> "SectionBatch":
         """Return the same sections under another window; what it does not touch is shared."""
         other = replace(self, window=window)
-        own = {*vars(other), "_weight"}
+        own = {*vars(other), "weight"}
         vars(other).update({name: value for name, value in vars(self).items() if name not in own})
         return other
 
     @cached_property
-    def _weight(self) -> Array:
+    def weight(self) -> Array:
+        """How fully perturbations act at the spans, (k,)."""
         return self.window(self.eta)
 
     @cached_property
-    def _features(self) -> Features:
+    def parts(self) -> Features:
+        """What the sections are linear in."""
         return Features(self.blade, self.space, self.eta)
 
     @cached_property
-    def _placing(self) -> Placing:
+    def placing(self) -> Placing:
+        """Where the sections stand."""
         return Placing(self.blade, self.eta)
 
     @property
     def features(self) -> Array:
         """The features that sections are linear in, (k, F, n)."""
-        return self._features.values
+        return self.parts.values
 
     def coefficients(self, t: Array) -> Array:
-        """Return the coefficients (k, b, F, 2) of shapes with coordinates t (b, r)."""
-        return self._features.coefficients(t, self._weight)
+        """Return the coefficients (k, b, F, 2) of shapes with coordinates t (b, r) or (b, k, r)."""
+        return self.parts.coefficients(t, self.weight)
 
     @property
     def modes(self) -> int:
@@ -94,7 +97,7 @@ class SectionBatch:
         return self.space.dimension if self.space is not None else 0
 
     @cached_property
-    def _ruling(self) -> Array:
+    def ruling(self) -> Array:
         """The relative thickness that the baseline has or shall have, (k,)."""
         wanted = self.blade.wanted_thickness(self.eta)
         return self.before if wanted is None else wanted
@@ -106,7 +109,7 @@ class SectionBatch:
 
     @cached_property
     def _curves_before(self) -> SectionCurves:
-        plain, _, M, b = self._features.shapes
+        plain, _, M, b = self.parts.shapes
         return self.blade.splines.fit(affine.restore(plain, M, b))
 
     @property
@@ -123,9 +126,14 @@ class SectionBatch:
     @cached_property
     def _lines(self) -> tuple[ChordLines, Motions]:
         """The baseline's chord lines at its own relative thickness, and how they got there."""
-        return self.blade.shape.chord_lines(self.eta, self._ruling)
+        return self.blade.shape.chord_lines(self.eta, self.ruling)
 
-    def _standing(self, target: Array) -> Array:
+    @property
+    def alone(self) -> Mask:
+        """Where the baseline's chord line is the same at any relative thickness, (k,)."""
+        return self._lines[0].alone
+
+    def standing(self, target: Array) -> Array:
         """Return where sections of relative thickness (k, b) shall stand, (k, b, 4).
 
         Nose and trailing-edge midpoint of the chord lines that they keep, or the motions that
@@ -139,7 +147,7 @@ class SectionBatch:
 
         result = np.repeat(numbers(*self._lines)[:, None], target.shape[1], axis=1)
         # where two noses compete, the line depends on the thickness
-        two = ~self._lines[0].alone & np.any(target != self._ruling[:, None], axis=1)
+        two = ~self.alone & np.any(target != self.ruling[:, None], axis=1)
         for k in np.flatnonzero(two):
             eta = np.full(target.shape[1], self.eta[k])
             result[k] = numbers(*self.blade.shape.chord_lines(eta, target[k]))
@@ -157,18 +165,18 @@ class SectionBatch:
 
         Parameters
         ----------
-        t : (b, r) array
+        t : (b, r) or (b, k, r) array
             Coordinates along the modes [rad].
         change : AffineChange
-            With arrays (b,) where variants differ.
+            With arrays (b,) where variants differ, (b, k) where these do along the span.
         dtype : type
             Of the sections: float64 or float32.
         measured : bool
             Measure areas, centroids and so on.
         """
         shape = len(t), len(self.eta)
-        raw, target = self.coefficients(t), self._target(change, len(t))
-        to_space, chord, twist = self._placing(change, self._weight, len(t))
+        raw, target = self.coefficients(t), self.target(change, len(t))
+        to_space, chord, twist = self.placing(change, self.weight, len(t))
         sections: Array = np.empty((*shape, len(self.blade.u), 3), dtype=dtype)
         measures = np.empty((*shape, len(polygons.MEASURES)) if measured else (0, 0, 0))
         looks = np.empty((*shape, len(CHARACTERISTICS)))
@@ -188,7 +196,7 @@ class SectionBatch:
                     scale = chord[i, :, None, None]
                     measures[i] = polygons.measure(profiles[i, ..., :2] * scale)
         if measured:
-            twist = twist + self._features.turned(sections, to_space)
+            twist = twist + self.parts.turned(sections, to_space)
         return Batch(
             sections,
             chord,
@@ -208,7 +216,7 @@ class SectionBatch:
 
     def tested(self, t: Array, change: AffineChange) -> tuple[Indices, Array, Array]:
         """Return faults and relative thickness of variants, (b, k), and their looks (b, k, 6)."""
-        raw, target = self.coefficients(t), self._target(change, len(t))
+        raw, target = self.coefficients(t), self.target(change, len(t))
         chord, to_space, measures = np.empty((0, 0)), np.empty((0, 0, 0, 0)), np.empty((0, 0, 0))
         looks = np.empty((len(t), len(self.eta), len(CHARACTERISTICS)))
         faults = self._made(raw, target, chord, chord, to_space, to_space, measures, looks)
@@ -223,16 +231,16 @@ class SectionBatch:
         """Where the space's data allow the sections to go; None without a space."""
         if self.space is None:
             return None
-        return Domain.of(self.space, self.eta, self._features.shapes[1], self._ruling)
+        return Domain.of(self.space, self.eta, self.parts.shapes[1], self.ruling)
 
     def step(self, t: Array) -> Array:
-        """Return by how much coordinates t (b, r) change those of the sections, (b, k, r)."""
-        return t[:, None] * self._weight[:, None]
+        """Return by how much coordinates t change those of the sections, (b, k, r)."""
+        return self.parts.weighted(t, self.weight).swapaxes(0, 1)
 
-    def _target(self, change: AffineChange, count: int) -> Array:
+    def target(self, change: AffineChange, count: int) -> Array:
         """Return the relative thickness to reach, (k, b)."""
-        thickening = faded(np.ones(1), self._weight[:, None], column(change.thickening).T)
-        target: Array = self._ruling[:, None] * thickening
+        thickening = faded(np.ones(1), self.weight[:, None], column(change.thickening).T)
+        target: Array = self.ruling[:, None] * thickening
         return np.broadcast_to(target, (len(self.eta), count))
 
     def _made(
@@ -250,11 +258,11 @@ class SectionBatch:
         from bladegen.variants import kernels
 
         own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
-        standing = self._standing(target) if sections.size else target[..., None]
+        standing = self.standing(target) if sections.size else target[..., None]
         given: list[Array | Indices] = [
             self.blade.u,
             self.features,
-            self._features.slopes,
+            self.parts.slopes,
             raw,
             target,
             standing,

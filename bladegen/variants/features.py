@@ -63,12 +63,27 @@ class Features:
         k, r = V.shape[:2]
         return (V.mT[:, :, None] @ V[:, None]).reshape(k, r * r, 4)
 
+    @staticmethod
+    def weighted(t: Array, weight: Array) -> Array:
+        """Return coordinates t, (b, r) or (b, k, r), times weights (k,), (k, b, r)."""
+        result: Array = (t if t.ndim == 2 else t.swapaxes(0, 1)) * weight[:, None, None]
+        return result
+
+    @property
+    def gram(self) -> Array:
+        """The products V_i^T V_j of the modes at the spans, (k, r, r, 2, 2)."""
+        k, r = self._carried.shape[:2]
+        return self._gram.reshape(k, r, r, 2, 2)
+
     def coefficients(self, t: Array, weight: Array) -> Array:
-        """Return the coefficients (k, b, F, 2) of shapes, coordinates t (b, r), weights (k,)."""
+        """Return the coefficients (k, b, F, 2) of shapes, at weights (k,) of coordinates t.
+
+        These are (b, r), or (b, k, r) where they differ along the span.
+        """
         _, _, M, b = self.shapes
         k, r = self._carried.shape[:2]
         count = len(t)
-        weighted = t * weight[:, None, None]
+        weighted = self.weighted(t, weight)
         pairs = (weighted[..., :, None] * weighted[..., None, :]).reshape(k, count, r * r)
         squares = np.zeros((k, count, 4))
         for j in range(r * r):  # a matrix product would round by how many variants there are

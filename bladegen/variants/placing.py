@@ -13,6 +13,16 @@ from bladegen.support.arrays import Array, ArrayLike
 __all__ = ["Placing", "column"]
 
 
+@dataclass(frozen=True)
+class Own:
+    """A blade's chord [m], twist [rad] and offsets [m] at span fractions, (k,) each."""
+
+    chord: Array
+    twist: Array
+    offset_y: Array
+    offset_x: Array
+
+
 @dataclass(frozen=True, eq=False)
 class Placing:
     """Places a blade's sections at span fractions `eta` (k,), for many changes at once."""
@@ -27,17 +37,15 @@ class Placing:
 
         What acts within a window does so by its weights (k,).
         """
-        eta, definition = self.eta, self.blade.definition
+        own = self.own
         widening, whole = column(change.widening), column(change.chord_scale)
-        chord = whole * faded(self.blade.chord(eta), weight, widening)
-        twist = faded(
-            column(change.twist_scale) * self.blade.twist(eta), weight, 1.0, column(change.twist)
-        )
-        offset_y = whole * faded(definition.offset_y(eta), weight, widening)
-        offset = np.stack(np.broadcast_arrays(-offset_y, definition.offset_x(eta)), axis=-1)
+        chord = whole * faded(own.chord, weight, widening)
+        twist = faded(column(change.twist_scale) * own.twist, weight, 1.0, column(change.twist))
+        offset_y = whole * faded(own.offset_y, weight, widening)
+        offset = np.stack(np.broadcast_arrays(-offset_y, own.offset_x), axis=-1)
         axis, frames = self._axis(np.asarray(change.prebend_scale, dtype=np.float64))
         axes, start = placement(chord, twist, offset, axis, frames)
-        shape = count, len(eta)
+        shape = count, len(self.eta)
         to_space = np.concatenate([axes, start[..., None, :]], axis=-2)
         return (
             np.broadcast_to(to_space, (*shape, 3, 3)),
@@ -45,16 +53,25 @@ class Placing:
             np.array(np.broadcast_to(twist, shape)),
         )
 
+    @cached_property
+    def own(self) -> "Own":
+        """What the blade itself has at the spans."""
+        blade, definition, eta = self.blade, self.blade.definition, self.eta
+        return Own(
+            blade.chord(eta), blade.twist(eta), definition.offset_y(eta), definition.offset_x(eta)
+        )
+
     def _axis(self, prebend_scale: Array) -> tuple[Array, Array]:
         """Return reference axes (b or 1, k, 3) and section frames (b or 1, k, 3, 3)."""
         values, inverse = np.unique(prebend_scale, return_inverse=True)
-        standing = [self._own_axis if value == 1.0 else self._bent(value) for value in values]
+        standing = [self.own_axis if value == 1.0 else self._bent(value) for value in values]
         axes, frames = (np.stack(parts) for parts in zip(*standing, strict=True))
         index = np.atleast_1d(inverse)
         return axes[index], frames[index]
 
     @cached_property
-    def _own_axis(self) -> tuple[Array, Array]:
+    def own_axis(self) -> tuple[Array, Array]:
+        """The reference axis (k, 3) [m] and the section frames (k, 3, 3) of the blade itself."""
         return self._bent(1.0)
 
     def _bent(self, prebend_scale: float) -> tuple[Array, Array]:
@@ -65,5 +82,6 @@ class Placing:
 
 
 def column(value: ArrayLike) -> Array:
-    """Return a number, or one a variant (b,), as (1, 1) or (b, 1)."""
-    return np.atleast_1d(np.asarray(value, dtype=np.float64))[:, None]
+    """Return a number, or one a variant (b,), as (1, 1) or (b, 1); (b, k) as it is."""
+    amounts = np.asarray(value, dtype=np.float64)
+    return amounts if amounts.ndim == 2 else np.atleast_1d(amounts)[:, None]

@@ -32,7 +32,10 @@ class Section(NamedTuple):
 
 @compiled
 def noses(s: Section, work: Array) -> tuple[Numbers, ...]:
-    """Return the point farthest from the trailing-edge midpoint, its rival or itself, and that."""
+    """Return the point farthest from the trailing-edge midpoint, its rival or itself, and that.
+
+    The first two have their place u besides.
+    """
     points = s.points
     first = points.shape[1] // 4  # noses are in the front half
     edge = 0.5 * (points[0, 0] + points[0, -1]), 0.5 * (points[1, 0] + points[1, -1])
@@ -72,7 +75,7 @@ def highest(values: Array) -> tuple[int, bool]:
 
 @compiled
 def peak(s: Section, edge: Numbers, landmark: int) -> Numbers:
-    """Climb from a landmark to the point beside it that is farthest from the edge."""
+    """Climb from a landmark to the point beside it that is farthest from the edge, (x, y, u)."""
     cell = landmark
     px, py = piece(s, cell, (1.0, 0.0))
     h = 0.0
@@ -92,7 +95,7 @@ def peak(s: Section, edge: Numbers, landmark: int) -> Numbers:
             h = 0.5 * (low + high)
         if abs(h - start) <= PARAMETER_TOLERANCE:
             break
-    return at(px, h)[0], at(py, h)[0]
+    return at(px, h)[0], at(py, h)[0], s.u[cell] + h
 
 
 @compiled
@@ -143,8 +146,10 @@ def cell_of(u: Array, t: float, cell: int) -> int:
 
 
 @compiled
-def thickest(s: Section, along: Numbers, work: Array) -> float:
+def thickest(s: Section, along: Numbers, work: Array) -> Numbers:
     """Return the largest distance between the sides normal to a direction, at one place along it.
+
+    The places u on the suction and the pressure side are returned besides.
 
     Newton's method climbs from the thickest pair of landmarks, kept by bisection between places
     where the distance rises and falls.
@@ -189,7 +194,7 @@ def thickest(s: Section, along: Numbers, work: Array) -> float:
         if not low <= t <= high:
             t = 0.5 * (low + high)
         height = y - v + v1 * step + 0.5 * rising * (t - start)
+        w += rate * (t - start)
         if abs(t - start) <= PARAMETER_TOLERANCE:
             break
-        w += rate * (t - start)
-    return height
+    return height, t, w

@@ -6,17 +6,13 @@ function, with the notation and the tolerances there.  What is measured: `sectio
 
 from math import asin, copysign, sin, sqrt
 
-import numpy as np
-
 from bladegen.airfoils.resizing import RIVAL
 from bladegen.airfoils.section_curves import AMBIGUOUS, EVEN, SETTLED
 from bladegen.curves.plane_maps import (
     Numbers,
     between,
-    carried,
     combine,
     distance,
-    followed,
     turned,
 )
 from bladegen.curves.roots import ITERATIONS, ROUNDING
@@ -37,34 +33,12 @@ def sizing(
 
     Maps are (a, b, c, d, e, f): x' = a x + c y + e and y' = b x + d y + f.
     """
-    total, own, either = step(s, values, target, now, moved, work)
-    c, points = now, moved
-    if either:
-        c, points = np.empty_like(now), np.empty_like(moved)
-    for _ in range(ITERATIONS):  # away from noses that agree
-        if not either:
-            break
-        carried(s.c, total, c)
-        combine(values, c, points)
-        here = Section(s.u, s.slopes, c, points)
-        more, _, either = step(here, values, target, now, moved, work)
-        total = followed(total, more)
-    return total, own
-
-
-@compiled
-def step(
-    s: Section, values: Array, target: float, now: Array, moved: Array, work: Array
-) -> tuple[Numbers, float, bool]:
-    """Return the map, exact unless either nose may lead, the thickness, and whether that is so."""
     total, own, rivals, passed = resizing(s, target, work)
-    either = False
     if rivals or passed:
-        other, place, either = shared(s, values, target, now, moved, work)
-        either = either and rivals
-        if not either and (rivals or place > 0.0):
+        other, place = shared(s, values, target, now, moved, work)
+        if rivals or place > 0.0:
             total = other
-    return total, own, either
+    return total, own
 
 
 @compiled
@@ -79,7 +53,7 @@ def resizing(s: Section, target: float, work: Array) -> tuple[Numbers, float, bo
     lead = between(one, two, led(ahead))
     length = distance(lead, edge)
     along = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length
-    thickness = thickest(s, along, work)
+    thickness = thickest(s, along, work)[0]
 
     x1, y1 = turned(one[0] - lead[0], one[1] - lead[1], along)
     x2, y2 = turned(two[0] - lead[0], two[1] - lead[1], along)
@@ -122,15 +96,21 @@ def stretching(start: Numbers, along: Numbers, stretch: float, reach: float) -> 
 @compiled
 def shared(
     s: Section, values: Array, target: float, now: Array, moved: Array, work: Array
-) -> tuple[Numbers, float, bool]:
-    """Return the map where noses share the edge, their share, and if 0 and 1 are shares, too."""
+) -> tuple[Numbers, float]:
+    """Return the map where noses share the edge, and their share.
+
+    Where either may lead, it is the one that is farther now.
+    """
     both, room = noses(s, work), (now, moved, work)
     first, above = stretched(s, values, both, 0.0, target, room)
     last, below = stretched(s, values, both, 1.0, target, room)
     if not above > EVEN:
-        return first, 0.0, not below < -EVEN
+        ahead = distance(both[0], both[2]) - distance(both[1], both[2])
+        if below < -EVEN or ahead >= 0.0:
+            return first, 0.0
+        return last, 1.0
     if not below < -EVEN:
-        return last, 1.0, False
+        return last, 1.0
     total = first
     place, low, high, kept = 0.0, 0.0, 1.0, 0
     for _ in range(ITERATIONS):
@@ -146,7 +126,7 @@ def shared(
             kept = -1
         if abs(value) <= EVEN or abs(place - before) <= ROUNDING:
             break
-    return total, place, False
+    return total, place
 
 
 @compiled
@@ -163,7 +143,7 @@ def stretched(
     lead = between(one, two, place)
     length = distance(lead, edge)
     ax, ay = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length
-    thickness = thickest(s, (ax, ay), work)
+    thickness = thickest(s, (ax, ay), work)[0]
     first = turned(one[0] - edge[0], one[1] - edge[1], (ax, ay))
     second = turned(two[0] - edge[0], two[1] - edge[1], (ax, ay))
     side = copysign(1.0, second[1] - first[1])
@@ -179,8 +159,8 @@ def stretched(
         now[-1, 0] -= edge[0] * ax + edge[1] * ay
         now[-1, 1] -= (edge[1] * ax - edge[0] * ay) * stretch
         combine(values, now, moved)
-        first, second, _ = noses(Section(s.u, s.slopes, now, moved), work)
-        first, second = (first[0], first[1] / stretch), (second[0], second[1] / stretch)
+        here, there, _ = noses(Section(s.u, s.slopes, now, moved), work)
+        first, second = (here[0], here[1] / stretch), (there[0], there[1] / stretch)
         if abs(stretch - before) <= SETTLED:
             break
     y1, y2 = side * first[1] * stretch, side * second[1] * stretch

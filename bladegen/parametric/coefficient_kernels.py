@@ -1,0 +1,221 @@
+"""Compiled loops: sections brought to size, and how their coefficients change.
+
+A section's own coordinates are few: the modes' coordinates t there, and the relative thickness.
+`linearised` finds how its coefficients change with them, after it was brought to size and to its
+chord line.  Arrays are (k, b, ...), spans first, as in `variants.kernels`.
+"""
+
+from math import sqrt
+
+import numpy as np
+
+from bladegen.curves.plane_maps import Numbers, carried, carry, combine, motion_of, onto
+from bladegen.parametric.section_slopes import LEAD_X, gradients, sized_slopes, turning
+from bladegen.support.arrays import Array
+from bladegen.support.compiled import compiled
+from bladegen.variants.section_measures import Section
+from bladegen.variants.sizes import sizing
+
+__all__ = ["linearised", "lines_slopes"]
+
+REVISION = 1  # of all that is compiled with these: with another text it is compiled anew
+TERMS = 20  # of the series of cos S and sin S / S; principal angles below 2 rad need 14
+
+
+@compiled
+def linearised(
+    u: Array,
+    values: Array,
+    slopes: Array,
+    coefficients: Array,
+    t: Array,
+    gram: Array,
+    M: Array,
+    target: Array,
+    standing: Array,
+    standing_slopes: Array,
+    kept: bool,
+    result: Array,
+    changes: Array,
+) -> None:
+    """Bring sections to size and to their chord lines; fill what comes out and its derivatives.
+
+    Parameters
+    ----------
+    u : (n,) array
+        Landmark parameters.
+    values, slopes : (k, F, n), (k, n, F) arrays
+        Features and their splines' slopes; the last is constant.
+    coefficients : (k, b, F, 2) array
+        Of the raw sections.
+    t : (k, b, r) array
+        Coordinates there [rad].
+    gram : (k, r, r, 2, 2) array
+        Products V_i^T V_j of the carried modes.
+    M : (k, 2, 2) array
+        Linear maps of the shapes.
+    target : (k, b) array
+        Relative thickness to reach.
+    standing, standing_slopes : (k, b, 4) arrays
+        As for `variants.kernels.made`, and the derivative in the relative thickness.
+    kept : bool
+        Whether `standing` holds chord lines; else motions.
+    result : (k, b, F, 2) array
+        Filled: coefficients of the sections in chords, edges as they are.
+    changes : (k, b, r + 1, F, 2) array
+        Filled: derivatives in t and in the relative thickness.
+    """
+    spans, count, features, _ = coefficients.shape
+    modes = t.shape[-1]
+    points, moved = np.empty((2, len(u))), np.empty((2, len(u)))
+    now, work = np.empty((features, 2)), np.empty(len(u))
+    rows, spare = np.empty((4, features, 2)), np.empty((2, 4, features, 2))
+    raw = np.zeros((modes, features, 2))
+    for k in range(spans):
+        for b in range(count):
+            c = coefficients[k, b]
+            combine(values[k], c, points)
+            section = Section(u, slopes[k], c, points)
+            total, _ = sizing(section, values[k], target[k, b], now, moved, work)
+            carry(points, total)
+            carried(c, total, now)
+            sized = Section(u, slopes[k], now, points)
+            line = gradients(sized, values[k], work, rows, spare)
+            shape_slopes(t[k, b], gram[k], M[k], raw)
+            change = changes[k, b]
+            sized_slopes(values[k], now, rows, line, total, raw, change)
+            there = standing[k, b]
+            motion = onto(line, there) if kept else motion_of(there)
+            carried(now, motion, result[k, b])
+            for q in range(modes + 1):
+                moving = standing_slopes[k, b] if q == modes else np.zeros(4)
+                if kept:
+                    follow(values[k], result[k, b], rows, line, motion, there, moving, change[q])
+                else:
+                    turn(change[q], motion)
+
+
+@compiled
+def turn(change: Array, motion: Numbers) -> None:
+    """Turn a derivative (F, 2) of coefficients as a motion does."""
+    for f in range(len(change)):
+        x, y = change[f, 0], change[f, 1]
+        change[f, 0] = x * motion[0] + y * motion[2]
+        change[f, 1] = x * motion[1] + y * motion[3]
+
+
+@compiled
+def follow(
+    values: Array,
+    c: Array,
+    rows: Array,
+    line: Numbers,
+    motion: Numbers,
+    there: Array,
+    moving: Array,
+    change: Array,
+) -> None:
+    """Turn a derivative (F, 2) so that the chord line stays on `there`, which moves itself."""
+    length = sqrt((line[2] - line[0]) ** 2 + (line[3] - line[1]) ** 2)
+    along = (line[2] - line[0]) / length, (line[3] - line[1]) / length, length
+    turning_by = lead_x = lead_y = 0.0
+    for f in range(len(c)):
+        tx, ty = turning(rows, values, f, along)
+        turning_by += tx * change[f, 0] + ty * change[f, 1]
+        lead_x += rows[LEAD_X, f, 0] * change[f, 0] + rows[LEAD_X, f, 1] * change[f, 1]
+        lead_y += rows[LEAD_X + 1, f, 0] * change[f, 0] + rows[LEAD_X + 1, f, 1] * change[f, 1]
+    bx, by = there[2] - there[0], there[3] - there[1]
+    wanted = (bx * (moving[3] - moving[1]) - by * (moving[2] - moving[0])) / (bx * bx + by * by)
+    angle = wanted - turning_by
+    turn(change, motion)
+    for f in range(len(c)):
+        change[f, 0] -= angle * c[f, 1]
+        change[f, 1] += angle * c[f, 0]
+    change[-1, 0] += moving[0] - (lead_x * motion[0] + lead_y * motion[2]) + angle * there[1]
+    change[-1, 1] += moving[1] - (lead_x * motion[1] + lead_y * motion[3]) - angle * there[0]
+
+
+@compiled
+def shape_slopes(t: Array, gram: Array, M: Array, raw: Array) -> None:
+    """Fill the derivatives (r, F, 2) of ``X cos S + D sin S / S``, times M, in coordinates (r,).
+
+    By the power series in S^2 = D^T D, which need no eigenvalues, and are exact where these agree.
+    """
+    modes = len(t)
+    squares = np.zeros((2, 2))
+    for i in range(modes):
+        for j in range(modes):
+            for a in range(2):
+                for b in range(2):
+                    squares[a, b] += t[i] * t[j] * gram[i, j, a, b]
+    for q in range(modes):
+        change = np.zeros((2, 2))
+        for i in range(modes):
+            for a in range(2):
+                for b in range(2):
+                    change[a, b] += t[i] * (gram[i, q, a, b] + gram[q, i, a, b])
+        _, dcos = series(squares, change, 0.0)
+        sinc, dsinc = series(squares, change, 1.0)
+        for a in range(2):
+            for b in range(2):
+                raw[q, a, b] = dcos[a, 0] * M[0, b] + dcos[a, 1] * M[1, b]
+                own = sinc[a, 0] * M[0, b] + sinc[a, 1] * M[1, b]
+                other = dsinc[a, 0] * M[0, b] + dsinc[a, 1] * M[1, b]
+                for i in range(modes):
+                    raw[q, 2 + 2 * i + a, b] = t[i] * other + (own if i == q else 0.0)
+
+
+@compiled
+def series(squares: Array, change: Array, odd: float) -> tuple[Array, Array]:
+    """Return cos S (odd 0) or sin S / S (odd 1) of S^2 (2, 2), and its derivative along a change.
+
+    Horner's rule on the sum of (-S^2)^m / (2 m + odd)!.
+    """
+    value, slope = np.eye(2), np.zeros((2, 2))
+    following = np.empty((2, 2))
+    for m in range(TERMS, 0, -1):
+        share = 1.0 / ((2.0 * m + odd) * (2.0 * m + odd - 1.0))
+        for a in range(2):
+            for b in range(2):
+                following[a, b] = change[a, 0] * value[0, b] + change[a, 1] * value[1, b]
+                following[a, b] += squares[a, 0] * slope[0, b] + squares[a, 1] * slope[1, b]
+        for b in range(2):
+            x = squares[0, 0] * value[0, b] + squares[0, 1] * value[1, b]
+            y = squares[1, 0] * value[0, b] + squares[1, 1] * value[1, b]
+            value[0, b] = (1.0 if b == 0 else 0.0) - share * x
+            value[1, b] = (1.0 if b == 1 else 0.0) - share * y
+        slope[:, :] = -share * following
+    return value, slope
+
+
+@compiled
+def lines_slopes(
+    u: Array, values: Array, slopes: Array, coefficients: Array, target: Array, result: Array
+) -> None:
+    """Fill how chord lines (m, b, 4) of sized sections move with the relative thickness.
+
+    Those of the coefficients (m, b, F, 2), brought to relative thickness (m, b) and not moved.
+    """
+    sections, count, features, _ = coefficients.shape
+    points, moved = np.empty((2, len(u))), np.empty((2, len(u)))
+    now, work = np.empty((features, 2)), np.empty(len(u))
+    rows, spare = np.empty((4, features, 2)), np.empty((2, 4, features, 2))
+    raw, change = np.empty((0, features, 2)), np.empty((1, features, 2))
+    for k in range(sections):
+        for b in range(count):
+            c = coefficients[k, b]
+            combine(values[k], c, points)
+            section = Section(u, slopes[k], c, points)
+            total, _ = sizing(section, values[k], target[k, b], now, moved, work)
+            carry(points, total)
+            carried(c, total, now)
+            sized = Section(u, slopes[k], now, points)
+            line = gradients(sized, values[k], work, rows, spare)
+            sized_slopes(values[k], now, rows, line, total, raw, change)
+            result[k, b] = 0.0
+            for f in range(features):
+                end = 0.5 * (values[k, f, 0] + values[k, f, -1])
+                for j in range(2):
+                    result[k, b, 0] += rows[LEAD_X, f, j] * change[0, f, j]
+                    result[k, b, 1] += rows[LEAD_X + 1, f, j] * change[0, f, j]
+                    result[k, b, 2 + j] += end * change[0, f, j]

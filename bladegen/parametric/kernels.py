@@ -1,0 +1,155 @@
+"""Compiled loops from sections' own derivatives to those of points, and back.
+
+Arrays are (k, b, ...), spans first, as in `variants.kernels`; points and directions (b, k, ...).
+"""
+
+import numpy as np
+
+from bladegen.curves.plane_maps import combine
+from bladegen.parametric.edge_slopes import SLOPES, back, carried_on, finished
+from bladegen.support.arrays import Array
+from bladegen.support.compiled import compiled
+
+__all__ = ["points_gradient", "points_slopes"]
+
+REVISION = 1  # of all that is compiled with these: with another text it is compiled anew
+BLOCK = 32  # points
+
+
+@compiled
+def points_slopes(
+    values: Array,
+    c: Array,
+    changes: Array,
+    kind: int,
+    width: Array,
+    to_space: Array,
+    chain: Array,
+    width_chain: Array,
+    space_chain: Array,
+    sections: Array,
+    result: Array,
+) -> None:
+    """Fill points of sections and their derivatives in p directions.
+
+    Parameters
+    ----------
+    values : (k, F, n) array
+        Features at the points that are wanted, symmetric about the leading edge.
+    c, changes : (k, b, F, 2), (k, b, q, F, 2) arrays
+        Coefficients in chords, and their derivatives.
+    kind : int
+        Of the edge's finish: `edge_slopes.GIVEN`, `MINIMUM` or `SHARP`.
+    width : (b, k) array
+        Of the edges, in chords.
+    to_space : (b, k, 3, 3) array
+        Maps of (x, y, 1) to space.
+    chain, width_chain, space_chain : (b, k, q, p), (b, k, p), (b, k, 3, 3, p) arrays
+        Derivatives in the directions: of a section's own coordinates, of its edge's width, and of
+        its map to space.
+    sections, result : (b, k, n, 3), (b, k, n, 3, p) arrays
+        Filled.
+    """
+    spans, count, own = changes.shape[:3]
+    n, p = values.shape[-1], chain.shape[-1]
+    points, half = np.empty((2, n)), np.empty(n // 2)
+    rules, parts = np.empty((n // 2, SLOPES)), np.empty((own + 1, 2, n))
+    rows, ways = np.empty((own + 4, n)), np.empty((own + 4, p))
+    for k in range(spans):
+        for b in range(count):
+            combine(values[k], c[k, b], points)
+            gap = points[1, 0] - points[1, -1]
+            for i in range(n // 2):
+                half[i] = 0.5 * (points[1, i] - points[1, -1 - i])
+            finished(points, kind, width[b, k], rules)
+            for q in range(own):
+                combine(values[k], changes[k, b, q], parts[q])
+                carried_on(rules, kind, gap, width[b, k], 0.0, parts[q], half)
+            parts[own] = 0.0
+            carried_on(rules, kind, gap, width[b, k], 1.0, parts[own], half)
+            axes = to_space[b, k]
+            ways[:own] = chain[b, k]
+            ways[own] = width_chain[b, k]
+            rows[own + 1], rows[own + 2], rows[own + 3] = points[0], points[1], 1.0
+            for j in range(3):
+                x, y = axes[0, j], axes[1, j]
+                for i in range(n):
+                    sections[b, k, i, j] = x * points[0, i] + y * points[1, i] + axes[2, j]
+                for q in range(own + 1):
+                    for i in range(n):
+                        rows[q, i] = x * parts[q, 0, i] + y * parts[q, 1, i]
+                ways[own + 1 :] = space_chain[b, k, :, j]
+                summed(rows, ways, j, result[b, k])
+
+
+@compiled
+def summed(rows: Array, ways: Array, j: int, result: Array) -> None:
+    """Fill ``result[:, j]`` (n, p) of (n, 3, p) with rows (q, n) times ways (q, p), mostly zeros.
+
+    Block by block of points, so that what is written lies in the processor's nearest cache.
+    """
+    count, n = rows.shape
+    block = np.empty(BLOCK)
+    for first in range(0, n, BLOCK):
+        length = min(BLOCK, n - first)
+        for g in range(ways.shape[1]):
+            block[:] = 0.0
+            for q in range(count):
+                way = ways[q, g]
+                if way != 0.0:
+                    for i in range(length):
+                        block[i] += way * rows[q, first + i]
+            for i in range(length):
+                result[first + i, j, g] = block[i]
+
+
+@compiled
+def points_gradient(
+    values: Array,
+    c: Array,
+    changes: Array,
+    kind: int,
+    width: Array,
+    to_space: Array,
+    gradient: Array,
+    own: Array,
+    in_width: Array,
+    in_space: Array,
+) -> None:
+    """Carry a gradient of points (b, k, n, 3) back to what sections are made of.
+
+    Filled are `own` (b, k, q), the gradient in a section's own coordinates, `in_width` (b, k), in
+    its edge's width, and `in_space` (b, k, 3, 3), in its map to space.
+    """
+    spans, count, directions, features = changes.shape[:4]
+    n = values.shape[-1]
+    points, g, half = np.empty((2, n)), np.empty((2, n)), np.empty(n // 2)
+    rules = np.empty((n // 2, SLOPES))
+    for k in range(spans):
+        for b in range(count):
+            combine(values[k], c[k, b], points)
+            gap = points[1, 0] - points[1, -1]
+            for i in range(n // 2):
+                half[i] = 0.5 * (points[1, i] - points[1, -1 - i])
+            finished(points, kind, width[b, k], rules)
+            axes, there = to_space[b, k], in_space[b, k]
+            there[:, :] = 0.0
+            g[:, :] = 0.0
+            for i in range(n):
+                x, y = points[0, i], points[1, i]
+                for j in range(3):
+                    one = gradient[b, k, i, j]
+                    there[0, j] += x * one
+                    there[1, j] += y * one
+                    there[2, j] += one
+                    g[0, i] += axes[0, j] * one
+                    g[1, i] += axes[1, j] * one
+            in_width[b, k] = back(rules, kind, gap, width[b, k], g, half)
+            own[b, k] = 0.0
+            for f in range(features):
+                x = y = 0.0
+                for i in range(n):
+                    x += values[k, f, i] * g[0, i]
+                    y += values[k, f, i] * g[1, i]
+                for q in range(directions):
+                    own[b, k, q] += changes[k, b, q, f, 0] * x + changes[k, b, q, f, 1] * y

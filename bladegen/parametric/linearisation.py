@@ -1,0 +1,137 @@
+"""The sections of variants at vectors x, and how they change: prepared once, used often.
+
+What sections are made of changes with the parameters by small arrays, the `Chain`; kernels carry
+them on to points, or a gradient of points back to the parameters.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladegen.airfoils.chord_lines import KEPT
+from bladegen.parametric.chain import Chain
+from bladegen.parametric.outline import Outline
+from bladegen.parametric.parameters import Parameters
+from bladegen.support.arrays import Array, Indices
+
+__all__ = ["Linearisation"]
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """Sections of variants x (b, p), and their derivatives.
+
+    Parameters
+    ----------
+    outline : Outline
+        The sections' features.
+    parameters : Parameters
+        What varies.
+    x : (b, p) array
+        Where.
+    """
+
+    outline: Outline
+    parameters: Parameters
+    x: Array
+
+    @cached_property
+    def chain(self) -> Chain:
+        """What the sections are made of."""
+        return Chain(self.outline.batch, self.parameters, self.x)
+
+    @cached_property
+    def coefficients(self) -> tuple[Array, Array]:
+        """Coefficients (k, b, F, 2) of sections in chords, and derivatives (k, b, r + 1, F, 2)."""
+        from bladegen.parametric import coefficient_kernels as kernels
+
+        outline, t = self.outline, self.chain.t
+        batch, parts = outline.batch, outline.batch.parts
+        raw, target = outline.coefficients(t), np.ascontiguousarray(self.chain.target.T)
+        standing = batch.standing(target)
+        moving = np.zeros_like(standing)
+        rows = np.flatnonzero(~batch.alone)
+        if batch.chord_line == KEPT and rows.size:
+            moving[rows] = self._line_slopes(rows, target[rows])
+        result = np.empty(raw.shape)
+        changes = np.empty((*raw.shape[:2], self.parameters.modes + 1, *raw.shape[2:]))
+        given = [batch.blade.u, outline.landmarks, outline.slopes, raw]
+        given += [parts.weighted(t, batch.weight), parts.gram, parts.shapes[2], target]
+        kernels.linearised(
+            *_laid_out(*given, standing, moving), batch.chord_line == KEPT, result, changes
+        )
+        return result, changes
+
+    def _line_slopes(self, rows: Indices, target: Array) -> Array:
+        """Return how the baseline's chord lines (m, b, 4) move with relative thickness (m, b)."""
+        from bladegen.parametric import coefficient_kernels as kernels
+
+        batch = self.outline.batch
+        plain = batch.coefficients(np.zeros((1, self.parameters.modes)))[rows]
+        raw, result = np.repeat(plain, target.shape[1], axis=1), np.zeros((*target.shape, 4))
+        given = [batch.blade.u, batch.features[rows], batch.parts.slopes[rows], raw, target]
+        kernels.lines_slopes(*_laid_out(*given), result)
+        return result
+
+    def points(self, chain: Array, width_chain: Array, space_chain: Array) -> tuple[Array, Array]:
+        """Return sections (b, k, n, 3), and derivatives (b, k, n, 3, q) along directions."""
+        from bladegen.parametric import kernels
+
+        c, changes = self.coefficients
+        kind, width, _ = self.chain.edge
+        values = self.outline.values
+        shape = (*width.shape, values.shape[-1], 3)
+        sections, result = np.empty(shape), np.empty((*shape, chain.shape[-1]))
+        given = _laid_out(width, self.chain.space[0], chain, width_chain, space_chain)
+        kernels.points_slopes(*_laid_out(values), c, changes, kind, *given, sections, result)
+        return sections, result
+
+    def jacobian(self) -> tuple[Array, Array]:
+        """Return sections (b, k, n, 3) and their derivatives (b, k, n, 3, p)."""
+        return self.points(*self.chain.ways)
+
+    def jvp(self, dx: Array) -> tuple[Array, Array]:
+        """Return sections and derivatives (b, k, n, 3) along directions dx (b, p)."""
+        ways = (
+            np.sum(part * dx.reshape(len(dx), *(1,) * (part.ndim - 2), -1), axis=-1, keepdims=True)
+            for part in self.chain.ways
+        )
+        sections, result = self.points(*ways)
+        return sections, result[..., 0]
+
+    def vjp(self, gradient: Array) -> Array:
+        """Return the gradient (b, p) in x of what has a gradient (b, k, n, 3) in points."""
+        from bladegen.parametric import kernels
+
+        c, changes = self.coefficients
+        kind, width, _ = self.chain.edge
+        shape = width.shape
+        own, in_width = np.empty((*shape, changes.shape[2])), np.empty(shape)
+        in_space = np.empty((*shape, 3, 3))
+        given = _laid_out(width, self.chain.space[0], gradient)
+        kernels.points_gradient(
+            *_laid_out(self.outline.values), c, changes, kind, *given, own, in_width, in_space
+        )
+        parts = (
+            np.einsum(how, given, way)
+            for how, given, way in zip(
+                ("bkq,bkqp->bp", "bk,bkp->bp", "bkij,bkijp->bp"),
+                (own, in_width, in_space),
+                self.chain.ways,
+                strict=True,
+            )
+        )
+        result: Array = sum(parts, np.zeros(self.x.shape))
+        return result
+
+    def sections(self) -> Array:
+        """Return sections (b, k, n, 3) alone."""
+        shape = self.chain.target.shape
+        none = [np.zeros((*shape, *size, 0)) for size in ((self.parameters.modes + 1,), (), (3, 3))]
+        return self.points(*none)[0]
+
+
+def _laid_out(*arrays: Array) -> list[Array]:
+    """Return arrays as the kernels are compiled for, contiguous and not read-only."""
+    return [np.require(array, requirements=["C", "W"]) for array in arrays]

@@ -1,0 +1,128 @@
+"""How the maps of sections to space change with chord, twist, offset and prebend.
+
+The laws are those of `blade.planform`; here stand their derivatives.  Section planes normal to
+the axis are carried along it by rotations, whose running product is followed by its derivative:
+products of ``[[R, 0], [dR, R]]`` hold both.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladegen.blade.planform import (
+    Planform,
+    crossing,
+    direction,
+    frame_grid,
+    normal_to_axis,
+    normal_to_z,
+    placement,
+    running_product,
+    turn,
+)
+from bladegen.errors import PerturbationError
+from bladegen.support.arrays import Array
+from bladegen.variants.placing import Placing
+
+__all__ = ["CHORD", "OFFSET", "PREBEND", "TWIST", "PlacedSlopes"]
+
+CHORD, TWIST, OFFSET, PREBEND = range(4)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedSlopes:
+    """Maps of a blade's sections to space, and their derivatives."""
+
+    placing: Placing
+
+    @property
+    def planform(self) -> Planform:
+        """The blade's own."""
+        return self.placing.blade.planform
+
+    def __call__(
+        self, chord: Array, twist: Array, offset_y: Array, prebend: Array | None
+    ) -> tuple[Array, Array]:
+        """Return maps (b, k, 3, 3) of (x, y, 1) to space and their derivatives (b, k, 4, 3, 3).
+
+        Chord [m], twist [rad] and offset [m] are (b, k), the prebend's scale (b,), or None if it
+        stays 1.  Derivatives are in these four, in the order of `CHORD`, ....
+        """
+        offset = np.stack(np.broadcast_arrays(-offset_y, self.placing.own.offset_x), axis=-1)
+        axis, own_frames = self.placing.own_axis
+        frames, bending = own_frames[None], np.zeros((1, *own_frames.shape))
+        if prebend is not None:
+            axis = axis * np.stack([prebend, *np.ones((2, len(prebend)))], -1)[:, None]
+            frames, bending = self._frames(prebend)
+        axes, start = placement(chord, twist, offset, axis, frames)
+        to_space = np.concatenate([axes, start[..., None, :]], axis=-2)
+        slopes = np.zeros((*chord.shape, 4, 3, 3))
+        unit = axes / chord[..., None, None]
+        slopes[:, :, CHORD, :2] = unit
+        turned = np.stack([unit[..., 1, :], -unit[..., 0, :]], axis=-2)  # of both rows in the twist
+        slopes[:, :, TWIST, :2] = chord[..., None, None] * turned
+        slopes[:, :, TWIST, 2] = (offset[..., None, :] @ turned)[..., 0, :]
+        slopes[:, :, OFFSET, 2] = -unit[..., 0, :]
+        if prebend is not None:
+            still = np.zeros(1)
+            bent, moved = placement(chord, twist, offset, still, bending)
+            slopes[:, :, PREBEND, :2] = bent
+            slopes[:, :, PREBEND, 2] = moved
+            slopes[:, :, PREBEND, 2, 0] += self.placing.own_axis[0][:, 0]
+        return to_space, slopes
+
+    def _frames(self, scale: Array) -> tuple[Array, Array]:
+        """Return section frames (b or 1, k, 3, 3) and their derivatives in the prebend's scale."""
+        planes, still = self.planform.planes, self.placing.own_axis[1][None]
+        if planes is normal_to_z:
+            return still, np.zeros_like(still)
+        if planes is not normal_to_axis:
+            raise PerturbationError(
+                "parameters: prebend_scale needs section planes normal to the axis or to z; "
+                "derivatives of others are not known"
+            )
+        values, inverse = np.unique(scale, return_inverse=True)
+        both = np.stack([self._bent(float(value)) for value in values])[inverse]
+        return both[..., :3, :3], both[..., 3:, :3]
+
+    def _bent(self, scale: float) -> Array:
+        """Return frames and their derivatives, ``[[F, 0], [dF, F]]`` (k, 6, 6), at one scale."""
+        axis = self.planform.definition.axis
+        grid = frame_grid(axis)
+        tangents, changes = _tangents(direction(axis, grid), scale)
+        first = np.array([[0.0, 0.0, 1.0]])
+        carried = running_product(
+            _turns(
+                np.concatenate([first, tangents[:-1]]),
+                np.concatenate([0.0 * first, changes[:-1]]),
+                tangents,
+                changes,
+            )
+        )
+        own = carried[
+            np.clip(np.searchsorted(grid, self.placing.eta, side="right") - 1, 0, len(grid) - 1)
+        ]
+        end, change = _tangents(direction(axis, self.placing.eta), scale)
+        return own @ _turns(own[:, 2, :3], own[:, 5, :3], end, change)
+
+
+def _tangents(along: Array, scale: float) -> tuple[Array, Array]:
+    """Return unit tangents (m, 3) of an axis whose prebend is scaled, and their derivatives."""
+    change = along * np.array([1.0, 0.0, 0.0])
+    scaled = along * np.array([scale, 1.0, 1.0])
+    length = np.linalg.norm(scaled, axis=-1, keepdims=True)
+    unit, change = scaled / length, change / length
+    return unit, change - unit * np.sum(unit * change, axis=-1, keepdims=True)
+
+
+def _turns(start: Array, start_change: Array, end: Array, end_change: Array) -> Array:
+    """Return `planform.turn` from start to end and its derivative as (m, 6, 6) matrices."""
+    K = crossing(np.cross(start, end))
+    change = crossing(np.cross(start_change, end) + np.cross(start, end_change))
+    c = np.sum(start * end, axis=-1)[..., None, None]
+    dc = np.sum(start_change * end + start * end_change, axis=-1)[..., None, None]
+    result = np.zeros((len(start), 6, 6))
+    result[:, :3, :3] = result[:, 3:, 3:] = turn(start, end)
+    result[:, 3:, :3] = change + (change @ K + K @ change) / (1.0 + c)
+    result[:, 3:, :3] -= K @ K * dc / (1.0 + c) ** 2
+    return result

@@ -1,0 +1,258 @@
+"""Compiled: derivatives of what a section measures, and of the map that brings it to size.
+
+A section is linear in coefficients c (F, 2), so each measure has a gradient (F, 2).  Noses and the
+thickest place are extremal: their values change as if they stayed where they are, and where they
+move to follows from the condition that puts them there.
+
+A map to size is ``s (1 + l n n')`` about the chord line, with n normal to it: a scale s, a lift l
+and a direction.  They are implicit functions of the raw section and of the relative thickness, by
+three conditions on the section Q that comes out,
+
+    the chord line of Q turns as n does,   its reach stays 1,   its thickness is the one asked for,
+
+so their derivatives solve three linear equations, however the map was found.
+"""
+
+from math import sqrt
+
+import numpy as np
+
+from bladegen.airfoils.section_curves import AMBIGUOUS
+from bladegen.curves.plane_maps import Numbers, between, distance
+from bladegen.support.arrays import Array
+from bladegen.support.compiled import compiled
+from bladegen.variants.section_measures import Section, cell_of, noses, thickest
+from bladegen.variants.sizes import led
+
+__all__ = ["LEAD_X", "LEAD_Y", "REACH", "THICKNESS", "gradients", "sized_slopes", "turning"]
+
+LEAD_X, LEAD_Y, REACH, THICKNESS = range(4)  # rows of `gradients`
+
+
+@compiled
+def basis(s: Section, values: Array, place: float, cell: int, phi: Array) -> None:
+    """Fill the features' splines and two derivatives (3, F) at a place in a cell of landmarks."""
+    width = s.u[cell + 1] - s.u[cell]
+    h = place - s.u[cell]
+    for f in range(len(values)):
+        start, slope = values[f, cell], s.slopes[cell, f]
+        secant = (values[f, cell + 1] - start) / width
+        bend = s.slopes[cell + 1, f] + slope - 2.0 * secant
+        second, third = (secant - slope - bend) / width, bend / (width * width)
+        phi[0, f] = start + h * (slope + h * (second + h * third))
+        phi[1, f] = slope + h * (2.0 * second + 3.0 * h * third)
+        phi[2, f] = 2.0 * second + 6.0 * h * third
+
+
+@compiled
+def along_contour(s: Section, phi: Array) -> Numbers:
+    """Return the first and the second derivative of the contour where a basis (3, F) was taken."""
+    x1 = y1 = x2 = y2 = 0.0
+    for f in range(len(s.c)):
+        x1 += phi[1, f] * s.c[f, 0]
+        y1 += phi[1, f] * s.c[f, 1]
+        x2 += phi[2, f] * s.c[f, 0]
+        y2 += phi[2, f] * s.c[f, 1]
+    return x1, y1, x2, y2
+
+
+@compiled
+def nose_gradient(
+    s: Section, values: Array, nose: Numbers, edge: Numbers, phi: Array, rows: Array
+) -> None:
+    """Fill the gradients (3, F, 2) of a nose's x and y and of its distance from the edge."""
+    basis(s, values, nose[2], cell_of(s.u, nose[2], len(s.u) // 2), phi)
+    x1, y1, x2, y2 = along_contour(s, phi)
+    x, y = nose[0] - edge[0], nose[1] - edge[1]
+    reach = sqrt(x * x + y * y)
+    bending = x1 * x1 + y1 * y1 + x * x2 + y * y2
+    for f in range(len(s.c)):
+        own = phi[0, f] - 0.5 * (values[f, 0] + values[f, -1])
+        ux = -(own * x1 + x * phi[1, f]) / bending
+        uy = -(own * y1 + y * phi[1, f]) / bending
+        rows[0, f, 0] = phi[0, f] + x1 * ux
+        rows[0, f, 1] = x1 * uy
+        rows[1, f, 0] = y1 * ux
+        rows[1, f, 1] = phi[0, f] + y1 * uy
+        rows[2, f, 0] = x * own / reach
+        rows[2, f, 1] = y * own / reach
+
+
+@compiled
+def gradients(s: Section, values: Array, work: Array, rows: Array, spare: Array) -> Numbers:
+    """Fill gradients (4, F, 2): the leading edge's x and y, the reach, and the thickness.
+
+    `spare` (2, 4, F, 2) is room.  Returned are x and y of the leading edge and of the
+    trailing-edge midpoint.  Where noses share the edge, their shares move with their distances;
+    the reach is that of the farther one.
+    """
+    one, two, edge = noses(s, work)
+    phi, psi = spare[1, :3, :, 0], spare[1, :3, :, 1]
+    nose_gradient(s, values, one, edge, phi, rows)
+    share = 0.0
+    if one != two:
+        other = spare[0]
+        nose_gradient(s, values, two, edge, phi, other)
+        ahead = distance(one, edge) - distance(two, edge)
+        share = led(ahead)
+        ratio = ahead / AMBIGUOUS
+        rate = -0.75 * (1.0 - ratio * ratio) / AMBIGUOUS if abs(ratio) < 1.0 else 0.0
+        for f in range(len(s.c)):
+            for j in range(2):
+                moved = rate * (rows[2, f, j] - other[2, f, j])
+                for i in range(2):
+                    rows[i, f, j] += share * (other[i, f, j] - rows[i, f, j])
+                    rows[i, f, j] += moved * (two[i] - one[i])
+                if ahead < 0.0:
+                    rows[2, f, j] = other[2, f, j]
+    lead = between(one, two, share)
+    length = distance(lead, edge)
+    ax, ay = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length
+    height, upper, lower = thickest(s, (ax, ay), work)
+    basis(s, values, upper, cell_of(s.u, upper, len(s.u) // 4), phi)
+    basis(s, values, lower, cell_of(s.u, lower, 3 * len(s.u) // 4), psi)
+    x1, y1, _, _ = along_contour(s, psi)
+    rate = (y1 * ax - x1 * ay) / (x1 * ax + y1 * ay)
+    for f in range(len(s.c)):
+        across = phi[0, f] - psi[0, f]
+        tx, ty = turning(rows, values, f, (ax, ay, length))
+        rows[THICKNESS, f, 0] = across * (-ay - rate * ax) - rate * height * tx
+        rows[THICKNESS, f, 1] = across * (ax - rate * ay) - rate * height * ty
+    return lead[0], lead[1], edge[0], edge[1]
+
+
+@compiled
+def turning(rows: Array, values: Array, f: int, line: Numbers) -> Numbers:
+    """Return the gradient (2,) of the chord line's angle in a feature's coefficients."""
+    ax, ay, length = line
+    end = 0.5 * (values[f, 0] + values[f, -1])
+    x = -ay * (end - rows[LEAD_X, f, 0]) - ax * rows[LEAD_Y, f, 0]
+    y = ay * rows[LEAD_X, f, 1] + ax * (end - rows[LEAD_Y, f, 1])
+    return x / length, y / length
+
+
+@compiled
+def sized_slopes(
+    values: Array, c: Array, rows: Array, line: Numbers, total: Numbers, raw: Array, slopes: Array
+) -> None:
+    """Fill the derivatives (q + 1, F, 2) of a sized section's coefficients.
+
+    Parameters
+    ----------
+    values : (F, n) array
+        Features.
+    c, rows : (F, 2), (4, F, 2) arrays
+        The sized section's coefficients, and its `gradients`.
+    line : (4,) numbers
+        Its leading edge and trailing-edge midpoint.
+    total : (6,) numbers
+        The map that sized it.
+    raw : (q, F, 2) array
+        Derivatives of the coefficients before.
+    slopes : (q + 1, F, 2) array
+        Filled; the last is that in the relative thickness.
+    """
+    length = distance(line[:2], line[2:])
+    ax, ay = (line[2] - line[0]) / length, (line[3] - line[1]) / length
+    a, b, d, e, kx, ky = total
+    scale = ax * (a * ax + d * ay) + ay * (b * ax + e * ay)
+    lifted = -ay * (-a * ay + d * ax) + ax * (-b * ay + e * ax)
+    lift, side = lifted / scale - 1.0, 1.0 - scale / lifted
+    moves = moves_of((ax, ay), lift, side)
+    for q in range(len(raw)):
+        for f in range(len(c)):
+            slopes[q, f, 0] = raw[q, f, 0] * a + raw[q, f, 1] * d
+            slopes[q, f, 1] = raw[q, f, 0] * b + raw[q, f, 1] * e
+    slopes[-1] = 0.0
+    shares = solved(values, c, rows, (ax, ay, length), moves, slopes)
+    # the map's shift is normal to the line: -lift / (1 + lift) times the carried edge's height
+    above = -ay * kx + ax * ky
+    ahead = ax * (line[2] - kx) + ay * (line[3] - ky)
+    high = -ay * (line[2] - kx) + ax * (line[3] - ky)
+    for q in range(len(slopes)):
+        z = shares[q]
+        xx = z[0] * moves[0, 0, 0] + z[1] * moves[1, 0, 0] + z[2] * moves[2, 0, 0]
+        xy = z[1] * moves[1, 0, 1] + z[2] * moves[2, 0, 1]
+        yx = z[1] * moves[1, 1, 0] + z[2] * moves[2, 1, 0]
+        yy = z[0] * moves[0, 1, 1] + z[1] * moves[1, 1, 1] + z[2] * moves[2, 1, 1]
+        rise = 0.0  # of the raw trailing edge's midpoint over the line, carried
+        for f in range(len(c)):
+            end = 0.5 * (values[f, 0] + values[f, -1])
+            rise += end * (ax * slopes[q, f, 1] - ay * slopes[q, f, 0])
+            slopes[q, f, 0] += c[f, 0] * xx + c[f, 1] * yx
+            slopes[q, f, 1] += c[f, 0] * xy + c[f, 1] * yy
+        normal = above * z[0] - high * z[1] + lift * ahead * z[2] - side * rise
+        slopes[q, -1, 0] -= kx * xx + ky * yx + ay * normal + ax * above * z[2]
+        slopes[q, -1, 1] -= kx * xy + ky * yy - ax * normal + ay * above * z[2]
+
+
+@compiled
+def moves_of(along: Numbers, lift: float, side: float) -> Array:
+    """Return the moves (3, 2, 2) of the plane by which maps to size differ.
+
+    A scale, a stretch normal to the chord line, and a turn of the line that is stretched from.
+    """
+    ax, ay = along
+    moves = np.zeros((3, 2, 2))
+    moves[0, 0, 0] = moves[0, 1, 1] = 1.0
+    moves[1, 0, 0], moves[1, 0, 1], moves[1, 1, 0], moves[1, 1, 1] = (
+        ay * ay,
+        -ax * ay,
+        -ax * ay,
+        ax * ax,
+    )
+    moves[2, 0, 0], moves[2, 0, 1] = (
+        lift * ax * ay + side * ax * ay,
+        -lift * ax * ax + side * ay * ay,
+    )
+    moves[2, 1, 0], moves[2, 1, 1] = lift * ay * ay - side * ax * ax, -(lift + side) * ax * ay
+    return moves
+
+
+@compiled
+def solved(
+    values: Array, c: Array, rows: Array, line: Numbers, moves: Array, slopes: Array
+) -> Array:
+    """Return the shares (q + 1, 3) of moves that keep the three conditions under changes.
+
+    The changes (q + 1, F, 2) of the coefficients are carried by the map already; with the last
+    the relative thickness grows by 1.
+    """
+    count = len(slopes)
+    system, right = np.zeros((3, 3)), np.zeros((count, 3))
+    own = np.empty((3, 2))
+    for f in range(len(c)):
+        own[0] = turning(rows, values, f, line)
+        own[1], own[2] = rows[REACH, f], rows[THICKNESS, f]
+        for m in range(3):
+            x = c[f, 0] * moves[m, 0, 0] + c[f, 1] * moves[m, 1, 0]
+            y = c[f, 0] * moves[m, 0, 1] + c[f, 1] * moves[m, 1, 1]
+            for i in range(3):
+                system[i, m] += own[i, 0] * x + own[i, 1] * y
+        for q in range(count):
+            for i in range(3):
+                right[q, i] -= own[i, 0] * slopes[q, f, 0] + own[i, 1] * slopes[q, f, 1]
+    system[0, 2] -= 1.0
+    right[count - 1, 2] = 1.0
+    inverse = inverted(system)
+    shares = np.zeros((count, 3))
+    for q in range(count):
+        for m in range(3):
+            for i in range(3):
+                shares[q, m] += inverse[m, i] * right[q, i]
+    return shares
+
+
+@compiled
+def inverted(m: Array) -> Array:
+    """Return the inverse of a 3 x 3 matrix."""
+    result = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            p, q, r, s = (j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3
+            result[i, j] = m[p, r] * m[q, s] - m[p, s] * m[q, r]
+    determinant = m[0, 0] * result[0, 0] + m[0, 1] * result[1, 0] + m[0, 2] * result[2, 0]
+    for i in range(3):
+        for j in range(3):
+            result[i, j] /= determinant
+    return result

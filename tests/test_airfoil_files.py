@@ -354,7 +354,7 @@ def test_both_sides_in_columns_are_a_contour(way, swapped, title, form):
     assert tabulates(lines) is None
     read = of_lines(lines, "a.csv")
     wanted = np.concatenate([np.stack([x, upper], 1)[::-1], np.stack([x, lower], 1)[1:]])
-    wanted = wanted[:, :] if not swapped else wanted[::-1]
+    wanted = wanted[::-1] if swapped else wanted
     assert_allclose(read.points, wanted, atol=1e-8)
     assert any(
         "three columns are read as x, y of one side and y of the other" in s for s in read.said

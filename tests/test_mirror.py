@@ -13,10 +13,14 @@ from bladegen.cad import shapes, solids
 from bladegen.cad.rotor import rotor_of
 from bladegen.cli import commands
 from bladegen.cli.options import common
-from bladegen.errors import ExportError, FamilyError
+from bladegen.errors import ExportError
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
+from bladegen.families.family import Family
+from bladegen.families.folder import FamilyFolder, read_manifest
+from bladegen.families.order import Order
 from bladegen.measures import checks, properties
+from bladegen.measures.spanwise import spanwise
 from bladegen.surface import fitting, mesh, mesh_files
 from bladegen.surface.grid import Spacing
 from bladegen.surface.grid import from_blade as grid_of
@@ -99,8 +103,9 @@ def test_what_cannot_hold_a_mirror_image_says_so(image, tmp_path):
     for suffix in (".yaml", ".dat", ".htc", ".csv", ".xlsx"):
         with pytest.raises(ExportError, match="mirror: blade definitions have y to the trailing"):
             bg.export(image, tmp_path / f"a{suffix}")
-    with pytest.raises(FamilyError, match="not of its mirror image"):
-        bg.family(image, bg.ShapeSpace.bundled(), count=2)
+    family = bg.family(image, None, count=2, bounds={"twist": (0.0, 0.1)})
+    with pytest.raises(ExportError, match="mirror: blade definitions have y to the trailing"):
+        Order(family, tmp_path, ("stl", "yaml"))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -157,3 +162,44 @@ def test_views_show_the_mirror_image_and_its_baseline(blade, monkeypatch, tmp_pa
     assert named["baseline"].mirrored
     assert named["baseline"].changes == ()
     assert one.name == "iea15mw-perturbed-mirrored"
+
+
+def test_figures_over_span_are_those_of_the_blade(blade, image):
+    eta = np.linspace(0.0, 1.0, 9)
+    one, two = spanwise(blade, eta), spanwise(image, eta)
+    for name, values in one.items():
+        assert_allclose(two[name], -values if name == "y_m" else values, atol=1e-12, err_msg=name)
+
+
+def test_a_family_of_a_mirror_image_is_the_family_mirrored(blade, image):
+    space = bg.ShapeSpace.bundled()
+    asked = {"count": 3, "seed": 5, "bounds": {"twist": (-0.05, 0.05)}, "spans": 20}
+    one, two = (bg.family(b, space, **asked) for b in (blade, image))
+    assert isinstance(two, Family)
+    places = np.arange(3)
+    plain, mirrored = (f.block(places, dtype=np.float32, measured=True) for f in (one, two))
+    assert mirrored.batch.sections.dtype == np.float32
+    wanted = plain.batch.sections[:, :, ::-1] * FLIP.astype(np.float32)
+    assert_allclose(mirrored.batch.sections, wanted, atol=0)
+    for what in ("chord", "twist", "relative_thickness", "measures"):
+        assert_allclose(getattr(mirrored.batch, what), getattr(plain.batch, what), atol=0)
+    assert two.name(1) == "iea15mw-00001-mirrored"
+    variant = two[1]
+    assert (variant.name, variant.mirrored) == (two.name(1), True)
+    assert_allclose(variant.sections(two.eta), mirrored.batch.sections[1], atol=2e-5)
+    assert two.table()["name"].to_pylist()[2] == two.name(2)
+
+
+def test_the_command_mirrors_a_family(tmp_path, blade, monkeypatch):
+    monkeypatch.setattr(common.Making, "blade", lambda *_: blade)
+    words = "family iea15mw --mirror --space none --vary twist=-1:1 --count 2 --spans 16"
+    words += f" --format stl --stations 20 -o {tmp_path}"
+    done = CliRunner().invoke(commands.app, words.split())
+    assert done.exit_code == 0, repr(done.exception)
+    assert "iea15mw-mirrored" in done.output
+    rows = read_manifest(FamilyFolder(tmp_path), ("name", "stl_file", "volume_m3"))
+    assert list(rows["name"]) == ["iea15mw-00000-mirrored", "iea15mw-00001-mirrored"]
+    assert list(rows["stl_file"]) == [f"blades/{name}.stl" for name in rows["name"]]
+    solid = mesh_files.read(tmp_path / rows["stl_file"][0])
+    assert solid.vertices[:, 1].min() < -3  # the trailing edge lies at -y
+    assert solid.volume > 0

@@ -25,17 +25,15 @@ from bladegen.blade.perturbation import Perturbation, Where, change_of, together
 from bladegen.blade.planform import Planform, SectionPlanes, normal_to_axis
 from bladegen.blade.shape import Shape
 from bladegen.blade.soundness import Trial, leaving
-from bladegen.blade.spans import span_fractions
+from bladegen.blade.spans import MIRROR, reflected, span_fractions
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import DefinitionError, Finding, visible
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import function, whole
-from bladegen.support.arrays import Array, ArrayLike, readonly
+from bladegen.support.arrays import Array, ArrayLike
 from bladegen.support.values import state_of
 
 __all__ = ["PATHS", "Blade"]
-
-MIRROR = readonly([1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -194,7 +192,7 @@ class Blade:
         finished = self.trailing_edge(self.profiles(flat, u), self.chord(flat))
         placed = self.planform.place(finished, flat)
         if self.mirrored:
-            placed = placed[:, ::-1] * MIRROR
+            placed = reflected(placed)
         return placed.reshape(*spans.shape, *placed.shape[1:])
 
     def with_trailing_edge(self, trailing_edge: TrailingEdge) -> Blade:

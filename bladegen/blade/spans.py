@@ -4,9 +4,11 @@ import numpy as np
 
 from bladegen.errors import DefinitionError
 from bladegen.support.arguments import numbers
-from bladegen.support.arrays import Array, ArrayLike, Indices
+from bladegen.support.arrays import Array, ArrayLike, Indices, readonly
 
-__all__ = ["both_sides", "landmarks_at", "span_fractions"]
+__all__ = ["MIRROR", "both_sides", "landmarks_at", "reflected", "span_fractions"]
+
+MIRROR = readonly([1.0, -1.0, 1.0])
 
 
 def span_fractions(eta: ArrayLike) -> Array:
@@ -37,3 +39,9 @@ def both_sides(u: Array) -> tuple[Array, Indices]:
     at = np.searchsorted(side, np.minimum(u, 1.0 - u))
     both = np.concatenate([side, 1.0 - side[-2::-1]])
     return both, np.where(u <= 0.5, at, len(both) - 1 - at)
+
+
+def reflected(sections: Array) -> Array:
+    """Return the mirror image in y of sections (..., n, 3), which goes round the same way."""
+    image: Array = sections[..., ::-1, :] * MIRROR.astype(sections.dtype)
+    return image

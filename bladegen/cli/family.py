@@ -14,6 +14,7 @@ from bladegen.cli.options.common import (
     BladeName,
     Formats,
     Making,
+    Mirror,
     Producing,
     Target,
     suffixes_of,
@@ -78,6 +79,7 @@ def family(
     formats: Formats = None,
     producing: Producing = PRODUCING,
     making: Making = MAKING,
+    mirror: Mirror = False,
     jobs: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
     dask: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead of --jobs.")
@@ -100,8 +102,9 @@ def family(
     if table is not None and (count is not None or vary):
         raise FamilyError("table: it says what varies and how often; leave --count and --vary out")
     landmarks = LANDMARKS if known is None else len(known.u)
+    baseline = making.blade(blade, landmarks)
     planned = plan(
-        making.blade(blade, landmarks),
+        baseline.mirror_image() if mirror else baseline,
         known,
         count=100 if count is None else count,
         seed=seed,

@@ -1,9 +1,11 @@
 """Neighbouring variants of a family, made at once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bladegen.blade.blade import Blade
+from bladegen.blade.spans import reflected
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.values import brief
 from bladegen.variants.batch import Batch
@@ -44,3 +46,10 @@ class Block:
     def valid(self) -> Mask:
         """Which variants are sound, (b,)."""
         return np.array([not reason for reason in self.reasons])
+
+    def of(self, blade: Blade) -> "Block":
+        """Return this block of a blade, its sections mirrored where the blade is a mirror image."""
+        if not blade.mirrored:
+            return self
+        sections = reflected(self.batch.sections)
+        return replace(self, batch=replace(self.batch, sections=sections))

@@ -138,14 +138,16 @@ class Family:
             refused = self._rules.tested(values)  # sections of so many would be made in vain
             values, attempts, reasons = self._redrawn(index, values, refused)
             batch = self._sections.evaluate(*self._rules.split(values), **made)
-            return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
+            return Block(index, values, attempts, tuple(reasons), tuple(refused), batch).of(
+                self.blade
+            )
         batch = self._sections.evaluate(*self._rules.split(values), **made)
         refused = self._rules.reasons(values, batch.faults, batch.relative_thickness, batch.looks)
         values, attempts, reasons = self._redrawn(index, values, refused)
         again = np.flatnonzero(attempts > 1)
         if again.size:
             batch.take(again, self._sections.evaluate(*self._rules.split(values[again]), **made))
-        return Block(index, values, attempts, tuple(reasons), tuple(refused), batch)
+        return Block(index, values, attempts, tuple(reasons), tuple(refused), batch).of(self.blade)
 
     @property
     def _redraws(self) -> bool:
@@ -165,8 +167,12 @@ class Family:
 
     def name(self, place: int) -> str:
         """Return the name of a variant; names sort as their places do."""
+        ending = self.blade.name.removeprefix(self.blade.definition.name)  # of a mirror image
+        return f"{self._plain_name(place)}{ending}"
+
+    def _plain_name(self, place: int) -> str:
         digits = max(5, len(str(len(self) - 1)))
-        return f"{safe_stem(self.blade.name)}-{place:0{digits}d}"
+        return f"{safe_stem(self.blade.definition.name)}-{place:0{digits}d}"
 
     def _blade(self, place: int, values: Array) -> Blade:
         t, change = self._rules.split(values[None])
@@ -178,7 +184,7 @@ class Family:
             window=self.window,
             chord_line=self.chord_line,
             allow_extrapolation=True,
-            name=self.name(place),
+            name=self._plain_name(place),
         )
 
     def _drawn(self, index: Indices) -> Array:
@@ -232,7 +238,7 @@ def family(
     Parameters
     ----------
     blade : Blade
-        The baseline.
+        The baseline; of a mirror image all variants are mirrored.
     space : ShapeSpace, optional
         Modes of deformation, such as `ShapeSpace.bundled()`; all its coordinates vary.
     count : int
@@ -272,11 +278,6 @@ def family(
     if space is not None:
         must = "a ShapeSpace, such as bladegen.ShapeSpace.bundled(), or None"
         instance(space, ShapeSpace, "space", must, FamilyError)
-    if blade.mirrored:
-        raise FamilyError(
-            f"{blade.name}: families are made of the blade, not of its mirror image; mirror their "
-            "blades with mirror_image()"
-        )
     if not isinstance(design, Design):
         design = Design.of(factors(space, bounds, reach=reach), design, count, seed)
     return Family(

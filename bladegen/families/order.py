@@ -5,12 +5,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from bladegen.errors import FamilyError
-from bladegen.exports.options import Options
+from bladegen.errors import ExportError, FamilyError
+from bladegen.exports.options import Kind, Options
 from bladegen.exports.registry import format_of
 from bladegen.families.family import BLOCK, Family
 from bladegen.families.folder import FLOAT_TYPES, FamilyFolder
 from bladegen.families.identity import fingerprint, identity
+from bladegen.formats.writing import MIRRORED
 from bladegen.support.arrays import Array
 from bladegen.surface.fitting import fitted
 
@@ -47,7 +48,8 @@ class Order:
         if self.dtype not in FLOAT_TYPES:
             raise FamilyError(f"dtype: got {self.dtype!r}, allowed are {', '.join(FLOAT_TYPES)}")
         for suffix in self.suffixes:
-            format_of(Path(f"x{suffix}"))
+            if format_of(Path(f"x{suffix}")).kind is Kind.definition and self.family.blade.mirrored:
+                raise ExportError(MIRRORED)
         # Sums depend in their last digit on how many threads add them up: what the family has
         # computed so far is left behind, and `making.make_block` computes it again in one thread.
         fresh = replace(self.family, blade=replace(self.family.blade))

@@ -69,8 +69,10 @@ def built(blade: Blade, eta: Array) -> tuple[Array, Array]:
 
     Both are measured on the finished points in space: the line from the point farthest from the
     middle of the trailing edge to that middle, in the section's plane, less the angle that the
-    airfoil's own chord line has in the definition, before any change of shape.
+    airfoil's own chord line has in the definition, before any change of shape.  Those of a mirror
+    image are the blade's own: its nose turns toward the wind as before.
     """
+    blade = blade.mirror_image() if blade.mirrored else blade
     placed = blade.sections(eta) - blade.axis(eta)[:, None]
     flat = (placed @ blade.planform.frames(eta)[:, :2].mT)[..., ::-1]
     plain, _, M, b = blade.shapes(eta)

@@ -27,8 +27,8 @@ ENDS = 0.02  # chords; by so much x of two sides may miss 0 and 1
 BLUNT = 0.05  # chords between two sides at x = 0, which meet there
 WORDS = 3  # of a damaged point at most; a text that begins with numbers has more
 THIRD = (
-    "must be x and y; a z must be the same in all lines, and of x, y of one side and y of the other "
-    "x must run from 0 to 1 with one side above the other"
+    "must be x and y; a z must be the same in all lines, and of x, y of one side and y of the "
+    "other x must run from 0 to 1 with one side above the other"
 )
 _REMARK = re.compile(r"[!#%]|//")
 _WHOLE_REMARK = ("!", "#", "%", "//", ";", "*")

@@ -36,10 +36,10 @@ def area_moments(u: Array, points: Array) -> tuple[Array, Array]:
     half = 0.5 * np.diff(u)
     nodes = (u[:-1] + half)[:, None] + half[:, None] * _NODES
     weights = (half[:, None] * _WEIGHTS).reshape(-1)
-    p = splines.values(nodes.reshape(-1)) @ points
-    d = splines.values(nodes.reshape(-1), 1) @ points
-    x, y = p[..., 0], p[..., 1]
-    dx, dy = d[..., 0] * weights, d[..., 1] * weights
+    at = splines.values(nodes.reshape(-1)).mT
+    along = splines.values(nodes.reshape(-1), 1).mT * weights
+    x, y = points[..., 0] @ at, points[..., 1] @ at  # one product for all sections, not one each
+    dx, dy = points[..., 0] @ along, points[..., 1] @ along
     area = np.sum(x * dy - y * dx, axis=1) / 2.0
     moment_x = np.sum(x * x * dy, axis=1) / 2.0
     moment_y = -np.sum(y * y * dx, axis=1) / 2.0

@@ -10,6 +10,7 @@ import bladegen as bg
 from bladegen.blade.deformation import AffineChange, Coordinates
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.planform import normal_to_z
+from bladegen.curves import polygons
 from bladegen.errors import PerturbationError
 from bladegen.parametric.parameters import AFFINE, clamped
 from strategies import SEEDS, few
@@ -126,6 +127,36 @@ def test_products_with_the_jacobian_are_adjoint(name, seed):
     assert abs(np.sum(along * g) - back @ dx) < 1e-12 * size
     jacobian = model.jacobian(x)
     assert_allclose(along, jacobian @ dx, rtol=0, atol=1e-12 * np.abs(jacobian).max() * 30)
+
+
+@pytest.mark.parametrize("name", BLADES)
+def test_quantities_are_those_of_the_sections_with_exact_derivatives(name):
+    model = model_of(name)
+    x = drawn(model, 7)
+    found = model.quantities(x)
+    sections = model.sections(x)
+    volume, area = polygons.volume_and_area(sections)
+    assert_allclose([found["volume"], found["area"]], [volume, area], rtol=1e-12)
+    batch = model._evaluated(x[None], measured=True)
+    for name_, measure in zip(
+        polygons.MEASURES, np.moveaxis(batch.measures[0], -1, 0), strict=True
+    ):
+        assert_allclose(found[f"section_{name_}"], measure, rtol=1e-9, atol=1e-9)
+    assert_allclose(found["relative_thickness"], batch.relative_thickness[0], rtol=1e-12)
+    assert_allclose(found["chord"], batch.chord[0], rtol=1e-12)
+    for key in found:
+        exact = np.moveaxis(np.atleast_2d(found.jacobian(key)), 0, 0)
+        agree(
+            exact[:, None],
+            differences(lambda x, k=key: np.atleast_1d(model.quantities(x)[k].T).T[..., None], x)
+            if found[key].ndim
+            else differences(lambda x, k=key: model.quantities(x)[k][..., None, None], x),
+        )
+    stack = model.quantities(np.stack([x, model.baseline]))
+    assert_allclose(stack.jacobian("volume")[0], found.jacobian("volume"), rtol=1e-12)
+    assert stack.jacobian("section_area").shape == (2, len(SPANS), 11)
+    with pytest.raises(PerturbationError, match="quantity: got 'volumes', allowed are volume"):
+        found["volumes"]
 
 
 @pytest.mark.parametrize("fine", [False, True])

@@ -74,8 +74,13 @@ class Linearisation:
         kernels.lines_slopes(*_laid_out(*given), result)
         return result
 
-    def points(self, chain: Array, width_chain: Array, space_chain: Array) -> tuple[Array, Array]:
-        """Return sections (b, k, n, 3), and derivatives (b, k, n, 3, q) along directions."""
+    def points(
+        self, chain: Array, width_chain: Array, space_chain: Array, to_space: Array | None = None
+    ) -> tuple[Array, Array]:
+        """Return sections (b, k, n, 3), and derivatives (b, k, n, 3, q) along directions.
+
+        The directions are given as `Chain.ways`; the maps to space are the variants' or others.
+        """
         from bladegen.parametric import kernels
 
         c, changes = self.coefficients
@@ -83,7 +88,8 @@ class Linearisation:
         values = self.outline.values
         shape = (*width.shape, values.shape[-1], 3)
         sections, result = np.empty(shape), np.empty((*shape, chain.shape[-1]))
-        given = _laid_out(width, self.chain.space[0], chain, width_chain, space_chain)
+        to_space = self.chain.space[0] if to_space is None else to_space
+        given = _laid_out(width, to_space, chain, width_chain, space_chain)
         kernels.points_slopes(*_laid_out(values), c, changes, kind, *given, sections, result)
         return sections, result
 
@@ -99,6 +105,20 @@ class Linearisation:
         )
         sections, result = self.points(*ways)
         return sections, result[..., 0]
+
+    def flat(self) -> tuple[Array, Array]:
+        """Return sections (b, k, n, 2) [m] in their planes, and derivatives (b, k, n, 2, p).
+
+        Along the chord from the leading edge, and normal to it.
+        """
+        chain = self.chain
+        plane = np.zeros((3, 3))
+        plane[0, 0] = plane[1, 1] = 1.0
+        chord, slopes = chain.planform[0], chain.chord_slopes
+        to_plane = chord[..., None, None] * plane
+        changes = slopes[:, :, None, None] * plane[..., None]
+        points, made = self.points(chain.own_slopes, chain.edge[2], changes, to_plane)
+        return points[..., :2], made[..., :2, :]
 
     def vjp(self, gradient: Array) -> Array:
         """Return the gradient (b, p) in x of what has a gradient (b, k, n, 3) in points."""

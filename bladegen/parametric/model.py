@@ -28,6 +28,7 @@ from bladegen.parametric.chain import change_of
 from bladegen.parametric.linearisation import Linearisation
 from bladegen.parametric.outline import Outline
 from bladegen.parametric.parameters import Parameters
+from bladegen.parametric.quantities import Quantities
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import instance, numbers, shown
 from bladegen.support.arrays import Array, ArrayLike, Mask, readonly
@@ -209,6 +210,13 @@ class ParametricBlade:
             raise PerturbationError(f"g: got {shown(gradient)}, must be of shape {shape}")
         made = linear.vjp(gradient.reshape(-1, *shape[-3:]))
         return made.reshape(*lead, -1)
+
+    def quantities(self, x: ArrayLike) -> Quantities:
+        """Return quantities by name at vectors x (..., p), and their derivatives.
+
+        ``quantities(x)["volume"]`` and ``quantities(x).jacobian("volume")``: see `Quantities`.
+        """
+        return Quantities(*self._linear(x))
 
     def valid(self, x: ArrayLike) -> Mask:
         """Tell which vectors (..., p) make sound sections within the space's data, (...)."""

@@ -1,3 +1,5 @@
+from dataclasses import dataclass, field
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -79,6 +81,45 @@ def test_fitted_nets_meet_their_tolerance(definition):
     assert len(fitted.v) <= fitting.MAX_SECTIONS
     assert said
     assert set(blade.eta) <= set(fitted.v)
+
+
+@dataclass
+class Tube:
+    """A blade of circular sections, 2 m thick, that says which spans it is asked for."""
+
+    jump: float = 0.0  # m, of the radius at eta = 0.4137
+    asked: list = field(default_factory=list)
+    u = U
+    sides = ("suction side", "pressure side")
+
+    def stations(self, count):
+        return np.linspace(0.0, 1.0, count)
+
+    def sections(self, eta, u=None):
+        self.asked += np.ravel(eta).tolist()
+        angle = 2.0 * np.pi * (self.u if u is None else u)
+        z = 20.0 * np.asarray(eta)[:, None] + 0.0 * angle
+        radius = 1.0 + 0.3 * np.sin(0.5 * z) + self.jump * (z > 20.0 * 0.4137)
+        return np.stack([radius * np.sin(angle), radius * np.cos(angle), z], axis=-1)
+
+
+def test_sections_are_made_once_while_others_are_added():
+    tube, said, first = Tube(), [], np.linspace(0.0, 1.0, 12)
+    surface, _ = fitted(tube, 1e-5, spans=first, progress=said.append)
+    assert len(said) > 2
+    added = np.setdiff1d(surface.v, first)
+    middles = 0.5 * (surface.v[1:] + surface.v[:-1])
+    assert {tube.asked.count(v) for v in (*added, *middles)} == {1}
+    found = surface.evaluate(surface.u, surface.v)
+    assert_allclose(found, tube.sections(surface.v, surface.u), rtol=0, atol=1e-12)
+
+
+def test_a_jump_is_not_followed_by_sections_without_end():
+    surface, measured = fitted(Tube(jump=0.05), 3e-4)
+    assert len(surface.v) < 200
+    assert np.diff(surface.v).min() > 0.49 * fitting.SHORTEST
+    assert measured.maximum > 3e-4
+    assert measured.eta == pytest.approx(0.4137, abs=1e-4)
 
 
 def test_a_finer_tolerance_takes_more_sections_and_gives_less_deviation():

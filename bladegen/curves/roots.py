@@ -9,10 +9,22 @@ import numpy as np
 
 from bladegen.support.arrays import Array, Indices, Mask
 
-__all__ = ["ITERATIONS", "PARAMETER_TOLERANCE", "ROUNDING", "bracketed", "falling"]
+__all__ = [
+    "HALVED",
+    "ITERATIONS",
+    "JUMP",
+    "PARAMETER_TOLERANCE",
+    "ROUNDING",
+    "SMOOTH",
+    "bracketed",
+    "falling",
+]
 
 PARAMETER_TOLERANCE = 1e-8  # of u, before the last step; places are off by a thousand squares of it
 ITERATIONS = 60  # bisection alone needs 40
+SMOOTH = 6  # steps, about, that find the root of a smooth function
+JUMP = 1e-3  # of values that are as far apart then, at the ends, the way is halved between
+HALVED = 1e-9  # of the way from 0 to 1; a jump is followed to there
 ROUNDING = 1e-15  # of the way from 0 to 1; steps below it change nothing
 
 
@@ -43,6 +55,9 @@ def bracketed(
 ) -> tuple[Array, Mask]:
     """Find where functions fall through zero between 0 and 1, by false position (Illinois).
 
+    A function that jumps through zero is halved to its jump; of the places on either side that is
+    returned whose value is nearer to zero.
+
     Parameters
     ----------
     f : callable
@@ -66,19 +81,25 @@ def bracketed(
     place, step = np.where(last & ~first, 1.0, 0.0), high.copy()
     rows = rows[~first & ~last]
     kept = np.zeros(count)  # the end that the last place left: 1 the upper, -1 the lower
-    for _ in range(ITERATIONS):
+    ends, jumps = np.stack([above, below]), np.zeros(count, dtype=bool)
+    for k in range(ITERATIONS):
         if not rows.size:
             break
         a, b = above[rows], below[rows]
-        at = low[rows] + (high[rows] - low[rows]) * (a / (a - b))
+        share = np.where(jumps[rows], 0.5, a / (a - b))
+        at = low[rows] + (high[rows] - low[rows]) * share
         step[rows], place[rows] = at - place[rows], at
         value = f(at, rows)
         rises = value > 0.0
         up, down = rows[rises], rows[~rises]
-        low[up], above[up] = at[rises], value[rises]
-        high[down], below[down] = at[~rises], value[~rises]
+        low[up], above[up], ends[0, up] = at[rises], value[rises], value[rises]
+        high[down], below[down], ends[1, down] = at[~rises], value[~rises], value[~rises]
         below[up] *= np.where(kept[up] > 0.0, 0.5, 1.0)  # or an end that stays would hold all back
         above[down] *= np.where(kept[down] < 0.0, 0.5, 1.0)
         kept[up], kept[down] = 1.0, -1.0
-        rows = rows[(np.abs(value) > tolerance) & (np.abs(step[rows]) > ROUNDING)]
+        jumps[rows] = (k >= SMOOTH) & (ends[0, rows] - ends[1, rows] > JUMP)
+        small = np.abs(step[rows]) <= np.where(jumps[rows], HALVED, ROUNDING)
+        rows = rows[(np.abs(value) > tolerance) & ~small]
+    nearer = np.where(ends[0] < -ends[1], low, high)
+    place = np.where(jumps, nearer, place)
     return place, first & last

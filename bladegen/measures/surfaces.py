@@ -137,7 +137,7 @@ def _net(blade: Blade) -> SurfaceNet:
     v = np.unique(np.concatenate([_grids(blade.definition), blade.stations(STATIONS), blade.eta]))
     v = v[np.concatenate([[True], np.diff(v) > NEAREST_KNOTS])]
     v[-1] = 1.0
-    u = resolving_landmarks(blade, blade.stations(max(60, len(blade.eta) + 2)), CLOSE)
+    u = resolving_landmarks(blade, blade.stations(max(60, len(blade.eta) + 2)), CLOSE)[0]
     here = blade.sections(v, u)
     before = (here - blade.sections(np.clip(v - STEP, 0.0, 1.0), u))[1:] / STEP
     behind = (blade.sections(np.clip(v + STEP, 0.0, 1.0), u) - here)[:-1] / STEP

@@ -5,11 +5,12 @@ through them stray from the airfoils.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Indices
 from bladegen.surface.deviation import BETWEEN, Deviation, deviation
 from bladegen.surface.net import SurfaceNet, fit
 
@@ -19,6 +20,7 @@ FIRST_SECTIONS = 120
 MAX_SECTIONS = 480
 MAX_LANDMARKS = 1601
 REFINEMENTS = 14
+SHORTEST = 1e-4  # of the span, between sections that are taken apart: where they jump, in vain
 MENDINGS = 6  # single sections that may be added where the final measurement is over
 MAXIMUM_SHARE = 0.5  # of the tolerance may be spent between sections at most
 RMS_SHARE = 0.08  # and in the mean; the rest is left to what lies between landmarks
@@ -58,39 +60,79 @@ def fitted(
     v = spans
     if v is None:
         v = blade.stations(FIRST_SECTIONS if sections is None else sections)
-    u = blade.u if sections is not None else resolving_landmarks(blade, v, tolerance)
-    for _ in range(REFINEMENTS):
+    if sections is not None:
         progress(f"fitting {len(v)} sections")
-        net = fit(_sections(blade, v, u), u, v)
-        if sections is not None:
-            break
-        middles = 0.5 * (v[1:] + v[:-1])
-        offsets = net.offsets(_sections(blade, middles, u), u, middles)
+        net = fit(blade.sections(v), blade.u, v)
+        return net, deviation(net, blade)
+    u, points = resolving_landmarks(blade, v, tolerance)
+    taken = _Taken.between_all(blade, u, v, points)
+    for _ in range(REFINEMENTS):
+        progress(f"fitting {len(taken.v)} sections")
+        net = taken.net
+        offsets = net.offsets(taken.between, u, taken.middles)
         worst = np.abs(offsets).max(axis=1)
         rms = np.sqrt(np.mean(offsets**2, axis=1))
         excess = np.maximum(worst / MAXIMUM_SHARE, rms / RMS_SHARE) / tolerance
-        room = MAX_SECTIONS - len(v)
+        excess[np.diff(taken.v) < SHORTEST] = 0.0
+        room = MAX_SECTIONS - len(taken.v)
         split = np.argsort(-excess, kind="stable")[: min(np.count_nonzero(excess > 1), room)]
         if not split.size:
             break
-        v = np.sort(np.concatenate([v, middles[split]]))
+        taken = taken.split(blade, np.sort(split))
     measured = deviation(net, blade)
     for _ in range(MENDINGS):
-        if sections is not None or measured.maximum <= tolerance or len(v) >= MAX_SECTIONS:
+        v = taken.v
+        if measured.maximum <= tolerance or len(v) >= MAX_SECTIONS:
             break
-        i = int(np.clip(np.searchsorted(v, measured.eta), 1, len(v) - 1))
-        v = np.sort(np.append(v, 0.5 * (v[i - 1] + v[i])))
-        net = fit(_sections(blade, v, u), u, v)
+        i = int(np.clip(np.searchsorted(v, measured.eta), 1, len(v) - 1)) - 1
+        if v[i + 1] - v[i] < SHORTEST:
+            break
+        taken = taken.split(blade, np.array([i]))
+        net = taken.net
         measured = deviation(net, blade)
     return net, measured
+
+
+@dataclass(frozen=True, eq=False)
+class _Taken:
+    """Sections at v (k,), and those in the middles between them, at landmarks u."""
+
+    u: Array
+    v: Array
+    points: Array
+    between: Array
+
+    @classmethod
+    def between_all(cls, blade: Blade, u: Array, v: Array, points: Array) -> "_Taken":
+        """Return sections with those in between."""
+        return cls(u, v, points, _sections(blade, 0.5 * (v[1:] + v[:-1]), u))
+
+    @property
+    def middles(self) -> Array:
+        """The spans in between, (k - 1,)."""
+        return 0.5 * (self.v[1:] + self.v[:-1])
+
+    @property
+    def net(self) -> SurfaceNet:
+        """The net through the sections."""
+        return fit(self.points, self.u, self.v)
+
+    def split(self, blade: Blade, rows: Indices) -> "_Taken":
+        """Take the middles of the intervals `rows` (rising) as sections; make those beside them."""
+        v = np.insert(self.v, rows + 1, self.middles[rows])
+        points = np.insert(self.points, rows + 1, self.between[rows], axis=0)
+        new = np.repeat(rows + np.arange(len(rows)), 2) + np.tile([0, 1], len(rows))
+        between = np.repeat(self.between, 1 + np.isin(np.arange(len(self.between)), rows), axis=0)
+        between[new] = _sections(blade, 0.5 * (v[new] + v[new + 1]), self.u)
+        return _Taken(self.u, v, points, between)
 
 
 def _sections(blade: Blade, v: Array, u: Array) -> Array:
     return blade.sections(v, None if u is blade.u else u)
 
 
-def resolving_landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
-    """Return as few landmark parameters as keep splines close to the airfoils' own.
+def resolving_landmarks(blade: Blade, v: Array, tolerance: float) -> tuple[Array, Array]:
+    """Return as few landmark parameters as keep splines close to the airfoils' own, and sections.
 
     Every so many-th of the blade's to begin with, then more where they are needed, on both
     sides alike: the blade's own first, and others between them where noise of the airfoils is
@@ -101,6 +143,7 @@ def resolving_landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
     half = len(blade.u) // 2
     stride = next(step for step in COARSE if half % step == 0)
     u = blade.u[::stride]
+    points = _sections(blade, v, u)
     while len(u) < MAX_LANDMARKS:
         at = np.searchsorted(blade.u, u)
         between = np.clip((at[1:] + at[:-1]) // 2, 0, len(blade.u) - 1)
@@ -109,8 +152,8 @@ def resolving_landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
         places = u[:-1, None] + BETWEEN * np.diff(u)[:, None]
         places[own, len(BETWEEN) // 2] = blade.u[between[own]]
         places[len(places) // 2 :] = 1.0 - places[: len(places) // 2][::-1, ::-1]
-        spline = CubicSpline(u, _sections(blade, v, u), axis=1)
-        missed = blade.sections(v, places.ravel()) - spline(places.ravel())
+        spline, true = CubicSpline(u, points, axis=1), blade.sections(v, places.ravel())
+        missed = true - spline(places.ravel())
         along = spline(places.ravel(), 1)
         along /= np.linalg.norm(along, axis=-1, keepdims=True)
         missed = np.linalg.norm(np.cross(missed, along), axis=-1)
@@ -119,4 +162,5 @@ def resolving_landmarks(blade: Blade, v: Array, tolerance: float) -> Array:
         if not split.any():
             break
         u = np.sort(np.concatenate([u, places[split, len(BETWEEN) // 2]]))
-    return u
+        points = _sections(blade, v, u)
+    return u, points

@@ -15,7 +15,7 @@ from bladegen.curves.plane_maps import (
     distance,
     turned,
 )
-from bladegen.curves.roots import ITERATIONS, ROUNDING
+from bladegen.curves.roots import HALVED, ITERATIONS, JUMP, ROUNDING, SMOOTH
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
 from bladegen.variants.section_measures import Section, noses, thickest
@@ -111,21 +111,26 @@ def shared(
         return last, 1.0
     if not below < -EVEN:
         return last, 1.0
-    total = first
-    place, low, high, kept = 0.0, 0.0, 1.0, 0
-    for _ in range(ITERATIONS):
-        before, place = place, low + (high - low) * (above / (above - below))
+    total, start, end = first, above, below
+    place, low, high, kept, jumps = 0.0, 0.0, 1.0, 0, False
+    for k in range(ITERATIONS):
+        share = 0.5 if jumps else above / (above - below)
+        before, place = place, low + (high - low) * share
         total, value = stretched(s, values, both, place, target, room)
         if value > 0.0:
-            low, above = place, value
+            low, above, start = place, value, value
             below *= 0.5 if kept == 1 else 1.0
             kept = 1
         else:
-            high, below = place, value
+            high, below, end = place, value, value
             above *= 0.5 if kept == -1 else 1.0
             kept = -1
-        if abs(value) <= EVEN or abs(place - before) <= ROUNDING:
+        jumps = k >= SMOOTH and start - end > JUMP
+        if abs(value) <= EVEN or abs(place - before) <= (HALVED if jumps else ROUNDING):
             break
+    if jumps:
+        place = low if start < -end else high
+        total, _ = stretched(s, values, both, place, target, room)
     return total, place
 
 

@@ -1,11 +1,14 @@
 """What new users type by mistake: each ends in one line that names it and the next step."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cli import commands
-from bladegen.cli.options import common
+from bladegen.cli.options import common, parsing
+from bladegen.cli.options.slips import instead_of
 from bladegen.errors import BladegenError
 
 BLADE = bg.Blade.from_definition(bg.read("iea15mw"))
@@ -29,6 +32,14 @@ SLIPS = {
     "check nowhere.step": "nowhere.step",
     "convert IEA15MW o.yaml": "did you mean iea15mw",
     "studio IEA15MW --no-browser": "did you mean iea15mw",
+    "info deutsch.csv": "write chord for 'Sehne', twist for 'Verwindung', airfoil for 'Profil'",
+    "info allemand.csv": "write chord for 'Profiltiefe', twist for 'Verwindung'",
+    "info french.csv": "write r for 'rayon', chord for 'corde', twist for 'vrillage'",
+    "info glued.csv": "glued.csv: row 2, chord: got '3.5-0.456', must be a number",
+    "perturb iea15mw -o o --twist 1 --space notes.txt": "notes.txt: is no shape space",
+    "perturb iea15mw -o o --twist 1 --space folder": "folder: is no regular file",
+    "convert iea15mw o.yaml --into folder": "folder: is a folder, must be the file of a model",
+    "convert iea15mw o.yaml --into notes": "notes: has no suffix, must be the file of a model",
     # formats
     "build iea15mw -o o --format stepp": "did you mean step?",
     "build iea15mw -o o --format step,stlx": "format: got 'stlx'",
@@ -43,6 +54,17 @@ SLIPS = {
     "build iea15mw -o o --tolerance 3in": "(um, mm, cm, m)",
     "build iea15mw -o o --tolerance -1mm": "tolerance: got '-1mm'",
     "build iea15mw -o o --tolerance 1m": "allowed is 1e-06 to 0.05 m (0.001 to 50 mm)",
+    "build iea15mw -o p --tolerance 0,3mm": "did you mean 0.3mm?",
+    "build iea15mw -o o --tolerance 0.3MM": "did you mean 0.3mm?",
+    "build iea15mw -o o --tolerance 0.3\u03bcm": "did you mean 0.3um?",
+    "build iea15mw -o o --trailing-edge 2": "such as 2mm, given or sharp",
+    "build iea15mw -o o --trailing-edge 2,5mm": "did you mean 2.5mm?",
+    "build iea15mw -o o --trailing-edge 2mm,1": "2mm,1%",
+    "build iea15mw -o o --trailing-edge -2mm": "trailing-edge: got '-2mm', must be a length",
+    "build iea15mw -o o --rotor --hub-radius 4": "hub-radius: got '4', must be a length with its",
+    "build iea15mw -o o --rotor --hub-radius 4,5m": "such as 2m; did you mean 4.5m?",
+    "build iea15mw -o o --rotor --precone 4grad": "must be an angle in degrees (4, 4deg)",
+    "build iea15mw -o o --fairing 1%": "fairing: got '1%', must be a share of the chord",
     # coordinates
     "perturb iea15mw -o o --pga 0.1,0.1,0.1": "t: got 3 coordinates (--pga), the space has 4 modes",
     "perturb iea15mw -o o --pga 0.9,0,0,0": "--allow-extrapolation",
@@ -52,7 +74,11 @@ SLIPS = {
     "perturb iea15mw -o o --pga 0,0,0,0@50%": "pga: got '50%' behind @, must be a span fraction",
     "perturb iea15mw -o o --pga 0,0,0,0 --pga 0,0,0,0": "must end in @ETA",
     "perturb iea15mw -o o --pga 0,0,0,0@0.5 --pga 0,0,0@0.6": "pga: got 4 and 3 coordinates",
+    "perturb iea15mw -o o --pga nan,0,0,0": "pga: got 'nan,0,0,0', must be numbers with commas",
     # amounts and windows
+    "perturb iea15mw -o o --window 10%,50% --twist 1": "must be two span fractions from 0 (root)",
+    "perturb iea15mw -o o --window 0.1:0.5 --twist 1": "with a comma between, such as 0.1,0.3",
+    "perturb iea15mw -o o --window 20m,80m --twist 1": "window: got '20m,80m', must be two span",
     "perturb iea15mw -o o --thickness 0": "thickness: got 0, allowed is 0.2 to 5",
     "perturb iea15mw -o o --thickness -1": "thickness: got -1, allowed is 0.2 to 5",
     "perturb iea15mw -o o --twist 100": "(100 deg), allowed is -0.7854 rad (-45 deg)",
@@ -75,7 +101,14 @@ SLIPS = {
     "family iea15mw -o o --invalid drop": "invalid: got 'drop', allowed are redraw, keep",
     "family iea15mw -o o --jobs 0 --count 2 --spans 16": "jobs: got 0",
     "family iea15mw -o o --table nowhere.csv": "nowhere.csv",
+    "family iea15mw -o o --vary t1=-10%:10%": "vary: got 't1=-10%:10%', must be NAME=LOW:HIGH",
+    "family iea15mw -o o --vary twist=-2deg:2deg": "or twist=-2:2 in degrees",
+    "family iea15mw -o o --vary thickness=0,9:1,1": "in numbers with decimal points",
     # looking
+    "preview iea15mw --gif x.gif --sweep t1=0.1": "sweep: got 't1=0.1', must be NAME=LOW:HIGH",
+    "preview iea15mw --screenshot folder": "suffix '', allowed are .png; such as folder.png",
+    "preview --compare iea15mw nrel5mw --mirror": "compare: takes two files or blades",
+    "plot iea15mw -o x.jpg": "allowed are .png, .svg, .pdf; such as x.png",
     "preview iea15mw --sweep t1=0:0.1": "needs --gif or --mp4",
     "preview": "bladegen list",
     "space info nowhere.npz": "nowhere.npz",
@@ -86,11 +119,35 @@ USAGE = {
     "build iea15mw -o o --tolerence 1mm": "--tolerance",
     "build iea15mw -o o --path linear": "geodesic",
     "build iea15mw -o o --landmarks 401.5": "--landmarks",
-    "perturb iea15mw -o o --twist 2deg": "--twist",
-    "perturb iea15mw -o o --thickness 1,05": "--thickness",
-    "family iea15mw -o o --count 1e3": "--count",
+    "perturb iea15mw -o o --twist 2deg": "'--twist': got '2deg', must be a number with a decimal",
+    "perturb iea15mw -o o --twist=0,1rad": "such as 5.72958",
+    "perturb iea15mw -o o --thickness 1,05": "with a decimal point, without a unit; such as 1.05",
+    "perturb iea15mw -o o --thickness 110%": "such as 1.1",
+    "perturb iea15mw -o o --pga 0.1 0 0 0": "commas between, without blanks, such as 0.1,0,0,0",
+    "family iea15mw -o o --count 1e3": "'--count': got '1e3', must be a whole number, in digits "
+    "alone; such as 1000",
+    "family iea15mw -o o --count 1,000": "such as 1000",
+    "family iea15mw -o o --count 10.5": "got '10.5', must be a whole number",
+    "family iea15mw -o o --count ten": "got 'ten', must be a whole number",
+    "family iea15mw -o o --reach 50%": "such as 0.5",
+    "family iea15mw -o o --vary thickness 0.9:1.1": "one word, such as thickness=0.9:1.1",
+    "build iea15mw -o o --stations=3.000,5": "got '3.000,5', must be a whole number",
+    "build iea15mw -o o --trailing-edge 2 mm": "has no blank before its unit, such as 2mm",
+    "build iea15mw -o o --format .step .stl": "commas between, without blanks, such as step,stl",
+    "space build -o s.npz --count 1e3": "such as 1000",
+    "studio iea15mw --port abc": "'--port': got 'abc', must be a whole number",
+    "help": "bladegen -h lists commands",
+    "help build": "bladegen build -h options",
     "info iea15mw nrel5mw": "nrel5mw",
     "lst": "list",
+}
+
+
+TABLES = {
+    "deutsch.csv": "Radius;Sehne;Verwindung;Profil\n0;3,5;13,3;a\n61,5;1,4;0,1;b\n",
+    "allemand.csv": "Radius [m];Profiltiefe [m];Verwindung [\u00b0]\n0;3,5;13,3\n61,5;1,4;0,1\n",
+    "french.csv": "rayon,corde,vrillage\n0,3.5,13\n61.5,1.4,0.1\n",
+    "glued.csv": "r,chord,twist\n0,3.5-0.456,13\n61.5,1.4,0.1\n",
 }
 
 
@@ -102,8 +159,14 @@ def typed(tmp_path, monkeypatch):
     for name in ("blade.yaml", "notes.txt", "folder/myblade.yaml"):
         (tmp_path / name).write_text("a: 1\n")
 
-    def blade(_making, source, *_):
-        return BLADE if source in bg.bundled() else bg.read(source)
+    for name, text in TABLES.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+
+    def blade(making, source, *_):
+        if source not in bg.bundled():
+            return bg.read(source)
+        parsing.chord_share(making.fairing, "fairing")
+        return BLADE.with_trailing_edge(parsing.finish(making.trailing_edge))
 
     monkeypatch.setattr(common.Making, "blade", blade)
     return lambda line: CliRunner().invoke(commands.app, line)
@@ -121,7 +184,7 @@ def test_a_slip_is_answered_in_a_line_that_says_what_to_type(typed, line):
 def test_usage_errors_name_the_option_that_is_meant(typed, line):
     result = typed(line)
     assert result.exit_code == 2
-    assert USAGE[line] in result.output
+    assert USAGE[line] in " ".join(result.output.split())
 
 
 def test_formats_may_come_with_commas_dots_and_capitals():
@@ -137,3 +200,23 @@ def test_formats_may_come_with_commas_dots_and_capitals():
 def test_choices_are_taken_in_any_case(typed):
     result = typed("build iea15mw -o o --path Spline --tip ROUND --unit MM --format zzz")
     assert "format: got 'zzz'" in str(result.exception)
+
+
+def test_words_are_taken_in_any_case(typed):
+    result = typed("build iea15mw -o o --trailing-edge Sharp --fairing OFF --rotor --precone 95")
+    assert "precone 95 deg, allowed is -45 to 45 deg" in str(result.exception)
+
+
+@given(st.integers(-(10**6), 10**6))
+def test_the_whole_number_that_is_meant_is_offered(value):
+    for typed in (f"{value}.0", f"{value},0", f"{value:e}" if abs(value) < 10**6 else f"{value}.0"):
+        assert instead_of(typed, whole=True).endswith(f"; such as {value}") or not value
+    if abs(value) >= 1000:
+        assert instead_of(f"{value:,}", whole=True).endswith(f"; such as {value}")
+
+
+@given(st.floats(-1e5, 1e5).map(lambda value: float(f"{value:.5g}")))
+def test_the_number_that_is_meant_is_offered(value):
+    typed = f"{value:f}".replace(".", ",")
+    offered = instead_of(typed, whole=False).rpartition("; such as ")[2]
+    assert float(offered) == pytest.approx(float(f"{value:f}"), rel=1e-5)

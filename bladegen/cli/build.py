@@ -63,7 +63,9 @@ def build(
 
         whole = rotor_of(
             made,
-            hub_radius=None if hub_radius is None else metres(hub_radius, "hub-radius"),
+            hub_radius=None
+            if hub_radius is None
+            else metres(hub_radius, "hub-radius", example="2m"),
             cone=None if precone is None else radians(precone, "precone"),
         )
     _build(made, output, suffixes, options, whole)

@@ -14,6 +14,7 @@ import typer
 import typer.core
 import typer.main
 
+from bladegen.cli.options.slips import Answering
 from bladegen.cli.output import CLOSED_PIPE, OutputError, guarded
 from bladegen.errors import BladegenError, MissingLibraryError
 from bladegen.support.stopping import Stopped, stopped_by_signals
@@ -45,8 +46,12 @@ class Commands(typer.core.TyperGroup):
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings | {"commands": dict.fromkeys(SUMMARIES)})
 
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a command, or None if there is none of this name."""
+        if cmd_name == "help":
+            ctx.fail(
+                "No such command 'help'; bladegen -h lists commands, bladegen build -h options."
+            )
         return command_of(cmd_name) if cmd_name in SUMMARIES else None
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002
@@ -95,7 +100,8 @@ def command_of(name: str) -> Any:
     if isinstance(run, typer.Typer):
         return typer.main.get_command(run)
     alone = typer.Typer(add_completion=False, context_settings=CONTEXT)
-    alone.command(name, epilog=help_text() if name == "preview" else None)(run)
+    keys = help_text() if name == "preview" else None
+    alone.command(name, cls=Answering, epilog=keys)(run)
     return typer.main.get_command(alone)
 
 
@@ -136,6 +142,7 @@ def main() -> None:
 
 @app.callback(invoke_without_command=True)
 def begin(
+    ctx: typer.Context,
     show: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
     verbose: Annotated[
         int,
@@ -155,3 +162,5 @@ def begin(
     if show:
         typer.echo(f"bladegen {__version__}")
         raise typer.Exit
+    if ctx.invoked_subcommand is None:
+        typer.echo(ctx.get_help())

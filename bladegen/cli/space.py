@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from bladegen.cli.options.common import ending_in
+from bladegen.cli.options.slips import Answering
 from bladegen.cli.terminal import print_findings, print_space, print_table, progress_bar
 
 __all__ = ["app"]
@@ -20,7 +21,7 @@ app = typer.Typer(
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
-@app.command("build")
+@app.command("build", cls=Answering)
 def build_space(
     output: Annotated[
         Path,
@@ -76,7 +77,7 @@ SpaceFile = Annotated[
 ]
 
 
-@app.command("info")
+@app.command("info", cls=Answering)
 def info_of_space(space: SpaceFile = None, as_json: Json = False) -> None:
     """Show a shape space: modes, variances, bounds."""
     from bladegen.shapes.shape_space import ShapeSpace
@@ -89,7 +90,7 @@ def info_of_space(space: SpaceFile = None, as_json: Json = False) -> None:
         print_space(loaded)
 
 
-@app.command("plot")
+@app.command("plot", cls=Answering)
 def plot_space(
     output: Annotated[
         Path,

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from bladegen.definition.blade_definition import BladeDefinition
-from bladegen.errors import Finding
+from bladegen.errors import FileError, Finding
 from bladegen.formats.format import Format, PutBack
 from bladegen.formats.proof import (
     Marking,
@@ -53,6 +53,10 @@ def write_into(
     ExportError
         If the file with the blade in it cannot be read, by what was wrong before or else.
     """
+    if turbine.is_dir() or not turbine.suffix:
+        is_what = "is a folder" if turbine.is_dir() else "has no suffix"
+        must = "must be the file of a model, such as turbine.yaml, AeroDyn.dat, model.htc"
+        raise FileError(str(turbine), [f"{is_what}, {must}"])
     own = turbine.suffix.lower()
     row, way = _way(own)
     require_suffix(path, way.suffixes if own in way.suffixes else (own,))

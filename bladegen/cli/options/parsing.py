@@ -77,9 +77,16 @@ def metres(text: str, field: str, others: str = "", example: str = "0.3mm") -> f
     if match is None:
         raise BladegenError(
             f"{field}: got {text!r}, must be a length with its unit ({', '.join(_METRES)}), "
-            f"such as {example}{others}"
+            f"such as {example}{others}{_near_length(text)}"
         )
     return float(f"{float(match[1]) * _METRES[match[2]]:.15g}")
+
+
+def _near_length(text: str) -> str:
+    """Return the length that a text may mean with decimal comma, capitals or a Greek letter."""
+    near = text.replace(",", ".").replace("\u03bc", "u").replace("\u00b5", "u").lower()
+    near = "".join(near.split())
+    return f"; did you mean {near}?" if near != text and _LENGTH.fullmatch(near) else ""
 
 
 def radians(text: str, field: str) -> float:
@@ -113,18 +120,18 @@ def finish(text: str, field: str = "trailing-edge") -> TrailingEdge:
     >>> finish("2mm,1%")
     MinimumThickness(thickness=0.002, most=0.01)
     """
-    if text in _NAMED:
-        return _NAMED[text]
+    if text.lower() in _NAMED:
+        return _NAMED[text.lower()]
     length, comma, share = text.partition(",")
-    if not comma:
-        return MinimumThickness(metres(length, field))
+    if not comma or _near_length(text):
+        return MinimumThickness(metres(text, field, ", given or sharp", "2mm"))
     match = _PER_CENT.fullmatch(share)
     if match is None or not 0 < float(match[1]) <= 100:
         raise BladegenError(
             f"{field}: got {text!r}, allowed are given, sharp, a length such as 2mm, or with the "
             "most of the local chord that it may be, 2mm,1%"
         )
-    return MinimumThickness(metres(length, field), float(match[1]) / 100.0)
+    return MinimumThickness(metres(length, field, example="2mm"), float(match[1]) / 100.0)
 
 
 _NAMED: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
@@ -142,7 +149,7 @@ def chord_share(text: str, field: str) -> float | None:
     >>> chord_share("2e-5", "fairing")
     2e-05
     """
-    if text == "off":
+    if text.lower() == "off":
         return None
     try:
         return float(text)
@@ -166,10 +173,14 @@ def factor_bounds(texts: Sequence[str], field: str = "vary") -> dict[str, tuple[
     bounds = {}
     for text in texts:
         name, _, limits = text.partition("=")
-        values = _numbers(limits.replace(":", ","), field) if limits.count(":") == 1 else []
+        try:
+            values = [float(word) for word in limits.split(":")]
+        except ValueError:
+            values = []
         if len(values) != 2:
             raise BladegenError(
-                f"{field}: got {text!r}, must be NAME=LOW:HIGH, such as thickness=0.9:1.1"
+                f"{field}: got {text!r}, must be NAME=LOW:HIGH in numbers with decimal points, "
+                "such as thickness=0.9:1.1, or twist=-2:2 in degrees"
             )
         low, high = np.radians(values) if name == "twist" else values
         bounds[name.strip()] = (float(low), float(high))
@@ -265,15 +276,24 @@ def span_window(text: str) -> Window:
     BladegenError
         If it does not hold two span fractions that rise.
     """
-    numbers = _numbers(text, "window")
+    try:
+        numbers = [float(word) for word in text.split(",")]
+    except ValueError:
+        numbers = []
     if len(numbers) != 2:
-        raise BladegenError(f"window: got {text!r}, must be two span fractions, such as 0.1,0.3")
+        raise BladegenError(
+            f"window: got {text!r}, must be two span fractions from 0 (root) to 1 (tip) with a "
+            "comma between, such as 0.1,0.3"
+        )
     return Window(*numbers)
 
 
 def _numbers(text: str, field: str) -> list[float]:
     try:
-        return [float(word) for word in text.split(",")]
+        values = [float(word) for word in text.split(",")]
+        if all(map(math.isfinite, values)):
+            return values
+        raise ValueError
     except ValueError:
         raise BladegenError(
             f"{field}: got {text!r}, must be numbers with commas between, such as 0.1,0,0,0"

@@ -83,9 +83,10 @@ class Changes:
         from bladegen.cli.options.parsing import coordinates, span_window
 
         t = coordinates(self.pga or [])
+        space = None if t is None and self.space is None else self.shape_space()
         amounts = {key: float(getattr(self, key)) for key in AFFINE}
         return blade.perturbed(
-            None if t is None else self.shape_space(),
+            None if t is None else space,
             () if t is None else t,
             **(amounts | {"twist": radians(self.twist)}),
             window=None if self.window is None else span_window(self.window),

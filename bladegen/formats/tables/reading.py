@@ -25,6 +25,7 @@ from bladegen.formats.airfoils.folder_reading import beside, shapes, thick_airfo
 from bladegen.formats.common import workbook
 from bladegen.formats.common.assembly import Library, Schedule, assemble, span_fractions
 from bladegen.formats.common.document import Node, Notes, Range
+from bladegen.formats.common.header_languages import chords_elsewhere, in_english
 from bladegen.formats.common.table import Block, Cell, Rows, blocks, values_of
 from bladegen.formats.common.text_file import delimiter_of, head, number, read_lines
 from bladegen.support.arrays import Array
@@ -46,7 +47,8 @@ LONGEST_HUB = 0.2  # of the tip radius; radii that start beyond it are no hub
 def recognises(path: Path) -> bool:
     """Tell whether a file is a spanwise table."""
     if path.suffix.lower() == ".csv":
-        return "chord" in head(path).lower()
+        words = head(path).lower()
+        return "chord" in words or any(name in words for name in chords_elsewhere())
     names = workbook.sheet_names(path)
     return GEOMETRY in names or (bool(names) and "Geometry" not in names)
 
@@ -68,6 +70,7 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
     if profile is None:
         notes.problems.append(
             "no table: must have a header with span and chord, such as z_m, chord_m"
+            + in_english(next((cells for _, cells in rows if any(cells)), ()))
         )
         return None
     values = _values(profile, notes)

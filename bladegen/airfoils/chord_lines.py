@@ -19,6 +19,8 @@ __all__ = ["CONVENTIONS", "KEPT", "PAPER", "ChordLines", "Motions", "angles", "k
 
 KEPT, PAPER = "kept", "paper"
 CONVENTIONS = (KEPT, PAPER)  # what a deformation does with the chord line
+THIN = 0.4  # of the chord; no stretch gives such a section a second nose
+LITTLE = 0.2  # of a thickness; nor does a stretch by less, even of a circle
 
 
 def known_convention(chord_line: str) -> str:
@@ -75,6 +77,29 @@ class ChordLines:
         """Return those of sections."""
         return cls(curves.leading_edge, curves.trailing_edge, ~curves.has_second_nose)
 
+    @classmethod
+    def sized(
+        cls, curves: SectionCurves, A: Array, c: Array, thickness: Array | None
+    ) -> "ChordLines":
+        """Return those of sections under the maps that bring them to relative thickness (k,).
+
+        A stretch normal to the chord line keeps a nose that is alone, and the line with it;
+        sections that have or may get another are measured again.
+        """
+        nose, edge = (
+            (p[:, None] @ A)[:, 0] + c for p in (curves.leading_edge, curves.trailing_edge)
+        )
+        alone = ~curves.has_second_nose
+        again = ~alone
+        if thickness is not None:
+            stretched = np.abs(thickness - curves.relative_thickness) > LITTLE * thickness
+            again |= stretched & (thickness > THIN)
+        rows = np.flatnonzero(again)
+        if rows.size:
+            some = cls.of(curves.take(rows).mapped(A[rows], c[rows]))
+            nose[rows], edge[rows], alone[rows] = some.nose, some.edge, some.alone
+        return cls(nose, edge, alone)
+
     def moved(self, motions: Motions) -> "ChordLines":
         """Return the lines after motions."""
         nose, edge = (motions.after(np.eye(2), p)[1] for p in (self.nose, self.edge))
@@ -83,11 +108,11 @@ class ChordLines:
     def onto(self, other: "ChordLines") -> Motions:
         """Return the motions that bring these lines onto others, nose onto nose."""
         own, wanted = self.edge - self.nose, other.edge - other.nose
-        own = own / np.linalg.norm(own, axis=-1, keepdims=True)
-        wanted = wanted / np.linalg.norm(wanted, axis=-1, keepdims=True)
-        c = np.sum(own * wanted, axis=-1)
-        s = own[:, 0] * wanted[:, 1] - own[:, 1] * wanted[:, 0]
-        R = np.stack([np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)], axis=-2)
+        (x, y), (x1, y1) = own.T, wanted.T
+        scale = np.hypot(x, y) * np.hypot(x1, y1)
+        c, s = (x * x1 + y * y1) / scale, (x * y1 - y * x1) / scale
+        R = np.empty((len(c), 2, 2))
+        R[:, 0, 0], R[:, 0, 1], R[:, 1, 0], R[:, 1, 1] = c, s, -s, c
         return Motions(R, other.nose - (self.nose[:, None] @ R)[:, 0])
 
 

@@ -40,11 +40,13 @@ def resizing(
         not the one sought.
     """
     line = trailing_edge - leading_edge
-    length = np.linalg.norm(line, axis=-1)
+    length = np.hypot(line[..., 0], line[..., 1])
     along = line / length[..., None]
-    normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+    ax, ay = along[..., 0], along[..., 1]
+    normal = along[..., ::-1] * (-1.0, 1.0)
     far = noses - leading_edge
-    x, y = np.sum(far * along, axis=-1), np.sum(far * normal, axis=-1)
+    fx, fy = far[..., 0], far[..., 1]
+    x, y = fx * ax + fy * ay, fy * ax - fx * ay
     stretch, reach = np.ones_like(length), np.hypot(length - x, y)
     if thickness is not None and relative_thickness is not None:
         for _ in range(3):  # noses beside the chord line move with the stretch
@@ -53,7 +55,7 @@ def resizing(
     # the farthest point stays the farthest under the stretch but where another nose passes it,
     # whose peak moves along the contour meanwhile and gains by that
     passed = reach[0] - reach[1] < RIVAL * length
-    passed &= np.any(noses[0] != noses[1], axis=-1)
+    passed &= (fx[0] != fx[1]) | (fy[0] != fy[1])
     return *stretching(leading_edge, normal, stretch, reach), passed
 
 

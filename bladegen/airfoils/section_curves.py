@@ -13,9 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.airfoils.resizing import RIVAL, resizing, stretching
+from bladegen.airfoils.noses import Noses, farthest
+from bladegen.airfoils.resizing import resizing, stretching
+from bladegen.airfoils.slopes import SplineSlopes
+from bladegen.airfoils.thickest import Places, thickest
 from bladegen.curves.cubics import Cubics
-from bladegen.curves.roots import ITERATIONS, bracketed, falling
+from bladegen.curves.roots import ITERATIONS, bracketed
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, Mask, mapped
 from bladegen.support.values import brief
@@ -24,19 +27,34 @@ __all__ = ["SectionCurves"]
 
 SETTLED = 1e-13  # change of a stretch that ends its iteration
 EVEN = 1e-11  # of `AMBIGUOUS`; differences of distances that are rounding
-SAME_NOSE = 3  # landmarks; nearer peaks are one nose
+NEAR = 20  # landmarks that moved, of which it is looked how much they did
+ROUNDING = 1e-15  # of a chord
 AMBIGUOUS = 2e-5  # of a chord; noses whose distances differ by less share the leading edge
 
 
 @dataclass(frozen=True, eq=False)
 class SectionCurves:
-    """Sections as splines: landmarks and slopes (k, n, 2) at the parameters u (n,)."""
+    """Sections as splines through landmarks (k, n, 2), with slopes that are made when needed."""
 
-    u: Array
+    splines: SplineSlopes
     points: Array
-    slopes: Array
 
     __repr__ = brief
+
+    @property
+    def u(self) -> Array:
+        """The landmark parameters, (n,)."""
+        return self.splines.u
+
+    @cached_property
+    def planes(self) -> Array:
+        """The landmarks as (2, k, n), all x, then all y: so arithmetic is several times as fast."""
+        return np.ascontiguousarray(self.points.transpose(2, 0, 1))
+
+    @cached_property
+    def slopes(self) -> Array:
+        """The slopes at the landmarks, (k, n, 2)."""
+        return self.splines.all(self.planes).transpose(1, 2, 0)
 
     def normalising(self, relative_thickness: Array | None) -> tuple[Array, Array]:
         """Return the maps of `SectionSplines.normalising`."""
@@ -46,7 +64,7 @@ class SectionCurves:
                 "sections: one has no thickness; do sides of neighbouring airfoils change places?"
             )
         A, c, passed = resizing(
-            np.stack(self._noses),
+            np.array(self._noses),
             self.leading_edge,
             self.trailing_edge,
             thickness,
@@ -60,8 +78,7 @@ class SectionCurves:
 
     def mapped(self, A: Array, c: Array) -> "SectionCurves":
         """Return the sections ``points @ A + c``, for maps (k, 2, 2) and (k, 2)."""
-        slopes = mapped(self.slopes, A, np.zeros(2))
-        return SectionCurves(self.u, mapped(self.points, A, c), slopes)
+        return SectionCurves(self.splines, mapped(self.points, A, c))
 
     def at(self, u: Array) -> tuple[Array, Array, Array]:
         """Return points and first and second derivatives at `u` (k, ...), each (k, ..., 2)."""
@@ -73,7 +90,49 @@ class SectionCurves:
 
     def take(self, rows: Indices) -> "SectionCurves":
         """Return some of the sections."""
-        return SectionCurves(self.u, self.points[rows], self.slopes[rows])
+        taken = SectionCurves(self.splines, self.points[rows])
+        if "_measured" in vars(self):
+            vars(taken)["_measured"] = self._measured.take(rows)
+        return taken
+
+    def reshaped(self, points: Array, behind: int) -> "SectionCurves":
+        """Return sections of which only the first and the last `behind` landmarks are others.
+
+        What was measured of these ahead of them is kept, where the others do not reach.
+        """
+        result, n = SectionCurves(self.splines, points), len(self.u)
+        if "_measured" not in vars(self):
+            return result
+        noses = self._measured
+        room = np.minimum(noses.low, n - 1 - noses.high) - behind
+        if not self._untouched(result, behind, room).all():
+            return result
+        vars(result)["_measured"] = noses
+        if "_places" in vars(self):
+            places, planes = self._places, result.planes
+            apart = planes[..., :behind] - planes[..., : -behind - 1 : -1]
+            normal = result._along[:, ::-1] * (-1.0, 1.0)
+            wider = (normal[:, None] @ apart.swapaxes(0, 1)).max(axis=(1, 2), initial=-np.inf)
+            room = np.minimum(places.upper, n - 1 - places.lower) - behind
+            kept = places.settled & (wider < places.pair)
+            kept &= self._untouched(result, behind, room)
+            others, height = np.flatnonzero(~kept), places.height.copy()
+            if others.size:
+                height[others] = result.take(others).thickness
+            vars(result)["_places"] = places._replace(height=height, settled=kept)
+        return result
+
+    def _untouched(self, other: "SectionCurves", behind: int, room: Indices) -> Mask:
+        """Tell where landmarks moved behind leave the splines as they are `room` (k,) ahead."""
+        n, tail, first = len(self.u), self.splines.tail, max(behind - NEAR, 0)
+        sides = slice(first, behind), slice(n - 1 - first, n - 1 - behind, -1)
+        moved = sum(
+            np.abs(other.planes[..., at] - self.planes[..., at]).sum(axis=0) for at in sides
+        )
+        away = room[:, None] - 1 + np.arange(behind - first, 0, -1)
+        reach = (moved * tail[np.clip(away, 0, n - 1)]).sum(axis=1)
+        reach += tail[np.clip(room + NEAR, 0, n - 1)]  # those farther move by less than a chord
+        return np.asarray((room > 0) & (reach < ROUNDING))
 
     @cached_property
     def trailing_edge(self) -> Array:
@@ -81,54 +140,26 @@ class SectionCurves:
         return 0.5 * (self.points[:, 0] + self.points[:, -1])
 
     @cached_property
-    def _distances(self) -> Array:
-        """Squared distances (k, n - 2 first) of the front half's landmarks to the edge."""
-        first = len(self.u) // 4
-        away = self.points[:, first:-first] - self.trailing_edge[:, None]
-        squares: Array = np.einsum("kni,kni->kn", away, away)
-        return squares
+    def _measured(self) -> Noses:
+        return farthest(self.splines, self.planes, self.trailing_edge.T)
 
-    def _peak(self, landmark: Indices) -> Array:
-        """Climb from landmarks (k,) to the points there that are farthest from the edge."""
-
-        def receding(u: Array) -> tuple[Array, Array]:
-            p, d1, d2 = self.at(u)
-            r = p - self.trailing_edge
-            return np.sum(r * d1, axis=-1), np.sum(d1 * d1 + r * d2, axis=-1)
-
-        u = self.u
-        return self.at(falling(receding, u[landmark - 1], u[landmark], u[landmark + 1]))[0]
-
-    @cached_property
+    @property
     def _noses(self) -> tuple[Array, Array]:
         """The farthest points, and the farthest of other peaks of the distance, (k, 2) each."""
-        distances, first = self._distances, len(self.u) // 4
-        best = np.argmax(distances, axis=1)
-        peaks = np.zeros(distances.shape, dtype=bool)
-        peaks[:, 1:-1] = (distances[:, 1:-1] > distances[:, :-2]) & (
-            distances[:, 1:-1] >= distances[:, 2:]
-        )
-        peaks &= np.abs(np.arange(distances.shape[1]) - best[:, None]) > SAME_NOSE
-        peaks &= distances > distances.max(axis=1, keepdims=True) * (1.0 - RIVAL)
-        other = np.argmax(np.where(peaks, distances, -1.0), axis=1)
-        other = np.where(peaks.any(axis=1), other, best)
-        farthest = self._peak(best + first)
-        if np.array_equal(other, best):
-            return farthest, farthest
-        alone = (other == best)[:, None]
-        return farthest, np.where(alone, farthest, self._peak(other + first))
+        return self._measured[:2]
 
     @property
     def has_second_nose(self) -> Mask:
         """Which sections have another peak nearly as far from the trailing edge, (k,)."""
-        one, two = self._noses
-        second: Mask = np.any(one != two, axis=-1)
+        second: Mask = self._measured.low != self._measured.high
         return second
 
     @property
     def has_rivals(self) -> Mask:
         """Which sections have another nose that shares in the leading edge, (k,)."""
         one, two = self._noses
+        if one is two:
+            return np.zeros(len(one), dtype=bool)
         near = np.abs(self._reach(one) - self._reach(two)) < 2.0 * AMBIGUOUS
         rivals: Mask = near & self.has_second_nose
         return rivals
@@ -141,6 +172,8 @@ class SectionCurves:
         agree to `AMBIGUOUS`, the leading edge moves smoothly from the one to the other.
         """
         one, two = self._noses
+        if one is two:
+            return one
         ahead = self._reach(one) - self._reach(two)
         f = np.clip(ahead / AMBIGUOUS, -1.0, 1.0)
         share = (0.5 - 0.25 * f * (3.0 - f * f))[:, None]
@@ -148,26 +181,19 @@ class SectionCurves:
 
     def _reach(self, points: Array) -> Array:
         """Distances of points (k, 2) from the trailing-edge midpoints, (k,)."""
-        reach: Array = np.linalg.norm(points - self.trailing_edge, axis=-1)
-        return reach
+        away = points - self.trailing_edge
+        return np.hypot(away[..., 0], away[..., 1])
 
     @cached_property
     def chord(self) -> Array:
         """The chords, (k,): the largest distances from the trailing-edge midpoints."""
-        return np.maximum(*(self._reach(nose) for nose in self._noses))
+        one, two = self._noses
+        return self._reach(one) if one is two else np.maximum(self._reach(one), self._reach(two))
 
     @property
     def relative_thickness(self) -> Array:
         """Largest distance between the sides normal to the chord line, over the chord, (k,)."""
         return self.thickness / self.chord
-
-    @property
-    def _along_chord(self) -> "SectionCurves":
-        """The sections turned so that x runs along the chord line."""
-        along = self.trailing_edge - self.leading_edge
-        along = along / np.linalg.norm(along, axis=-1, keepdims=True)
-        axes = np.stack([along, np.stack([-along[:, 1], along[:, 0]], axis=-1)], axis=-1)
-        return SectionCurves(self.u, self.points @ axes, self.slopes @ axes)
 
     def shared(self, relative_thickness: Array) -> tuple[Array, Array, Mask]:
         """Return the maps of `resizing` where two noses may share the leading edge.
@@ -213,8 +239,9 @@ class SectionCurves:
         along = (edge - lead) / self._reach(lead)[:, None]
         normal = np.stack([-along[:, 1], along[:, 0]], axis=-1)
         axes = np.stack([along, normal], axis=-1)
-        turned = SectionCurves(self.u, (self.points - edge[:, None]) @ axes, self.slopes @ axes)
-        thickness, far = turned._cubics.height, ((noses - edge)[..., None, :] @ axes)[..., 0, :]
+        turned = self.mapped(axes, -(edge[:, None] @ axes)[:, 0])
+        thickness = thickest(self.splines, self.planes, along).height
+        far = ((noses - edge)[..., None, :] @ axes)[..., 0, :]
         side = np.sign(far[1, :, 1] - far[0, :, 1])
         factors = np.ones((len(lead), 2))
         for _ in range(ITERATIONS):  # other points become the farthest, to second order
@@ -223,8 +250,8 @@ class SectionCurves:
             free = thickness**2 - (relative_thickness * y) ** 2
             free = np.maximum(free, SETTLED * thickness**2)  # or no stretch would do
             factors[:, 1] = relative_thickness * np.max(np.abs(x) / np.sqrt(free), axis=0)
-            points, slopes = turned.points * factors[:, None], turned.slopes * factors[:, None]
-            far = np.stack(SectionCurves(self.u, points, slopes)._noses) / factors
+            points = turned.points * factors[:, None]
+            far = np.stack(SectionCurves(self.splines, points)._noses) / factors
             if np.all(np.abs(factors[:, 1] - stretch) <= SETTLED):
                 break
         far *= factors
@@ -240,14 +267,21 @@ class SectionCurves:
     @property
     def edge_width(self) -> Array:
         """Distance from the pressure to the suction side's end normal to the chord line, (k,)."""
-        along = self.trailing_edge - self.leading_edge
-        gap = self.points[:, 0] - self.points[:, -1]
-        width: Array = (along[:, 0] * gap[:, 1] - along[:, 1] * gap[:, 0]) / self._reach(
-            self.leading_edge
-        )
+        along, gap = self._along, self.points[:, 0] - self.points[:, -1]
+        width: Array = along[:, 0] * gap[:, 1] - along[:, 1] * gap[:, 0]
         return width
 
     @cached_property
     def thickness(self) -> Array:
         """Largest distance between the sides normal to the chord line, (k,)."""
-        return self._along_chord._cubics.height
+        return self._places.height
+
+    @cached_property
+    def _along(self) -> Array:
+        """Unit vectors along the chord lines, (k, 2)."""
+        lead = self.leading_edge
+        return np.asarray((self.trailing_edge - lead) / self._reach(lead)[:, None])
+
+    @cached_property
+    def _places(self) -> Places:
+        return thickest(self.splines, self.planes, self._along)

@@ -1,26 +1,16 @@
-"""Sections with the same landmark parameters to their splines, by one matrix product."""
+"""Sections with the same landmark parameters to their splines."""
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from bladegen.airfoils.section_curves import SectionCurves
-from bladegen.support.arrays import Array, readonly
+from bladegen.airfoils.slopes import SplineSlopes
+from bladegen.support.arrays import Array
 from bladegen.support.values import brief
 
 __all__ = ["SectionSplines"]
-
-REMEMBERED = 8  # sets of landmark parameters whose matrices are kept, 1.3 MB each for 401
-
-
-@lru_cache(maxsize=REMEMBERED)
-def _slope_matrix(parameters_in_bytes: bytes) -> Array:
-    """Return the matrix of `SectionSplines`, shared by all blades with the same landmarks."""
-    from scipy.interpolate import CubicSpline
-
-    u = np.frombuffer(parameters_in_bytes)
-    return readonly(CubicSpline(u, np.eye(len(u)))(u, 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +24,7 @@ class SectionSplines:
 
     Notes
     -----
-    A spline's slopes are linear in its points, so a fit is one matrix product.
+    A spline's slopes are linear in its points; they are made where they are asked for.
     """
 
     u: Array
@@ -42,9 +32,8 @@ class SectionSplines:
     __repr__ = brief
 
     @cached_property
-    def _slopes(self) -> Array:
-        """The (n, n) matrix from points to the slopes of their not-a-knot cubic spline."""
-        return _slope_matrix(self.u.tobytes())
+    def _slopes(self) -> SplineSlopes:
+        return SplineSlopes.at(self.u)
 
     def values(self, u: Array, derivative: int = 0) -> Array:
         """Return the (m, n) matrix from landmarks to points, or derivatives, at `u`."""
@@ -55,10 +44,7 @@ class SectionSplines:
 
     def fit(self, points: Array) -> "SectionCurves":
         """Return the splines through landmarks (k, n, 2)."""
-        n, k = len(self.u), len(points)
-        columns = np.moveaxis(points, 1, 0).reshape(n, 2 * k)  # one product for all sections
-        slopes = np.moveaxis((self._slopes @ columns).reshape(n, k, 2), 0, 1)
-        return SectionCurves(self.u, points, slopes)
+        return SectionCurves(self._slopes, points)
 
     def normalising(self, points: Array, relative_thickness: Array | None) -> tuple[Array, Array]:
         """Return the maps that bring sections to unit chord and relative thickness, exactly.

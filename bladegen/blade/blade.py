@@ -16,7 +16,6 @@ from bladegen.airfoils.chord_lines import KEPT
 from bladegen.airfoils.fairing import TOLERANCE
 from bladegen.airfoils.landmarks import Spacing, clustered
 from bladegen.blade import outputs, parts
-from bladegen.blade.crowding import Crowding
 from bladegen.blade.deformation import AffineChange, Coordinates, Window
 from bladegen.blade.edges import MINIMUM_EDGE, TrailingEdge
 from bladegen.blade.loft import lofted
@@ -99,6 +98,7 @@ class Blade:
 
     plot, mesh, export, point = outputs.plot, outputs.mesh, outputs.export, outputs.point
     volume, _repr_html_ = cached_property(outputs.volume), outputs.html
+    _crowding = cached_property(outputs.crowding)
 
     @classmethod
     def from_definition(
@@ -189,11 +189,14 @@ class Blade:
         """
         spans = span_fractions(eta)
         flat = spans.reshape(-1)
-        finished = self.trailing_edge(self.profiles(flat, u), self.chord(flat))
-        placed = self.planform.place(finished, flat)
-        if self.mirrored:
-            placed = reflected(placed)
+        placed = self.placed(self.profiles(flat, u), flat)
         return placed.reshape(*spans.shape, *placed.shape[1:])
+
+    def placed(self, profiles: Array, eta: Array) -> Array:
+        """Finish sections (k, m, 2) and put them in space, (k, m, 3)."""
+        chord = self.chord(eta)
+        placed = self.planform.place(self.trailing_edge(profiles, chord), eta)
+        return reflected(placed) if self.mirrored else placed
 
     def with_trailing_edge(self, trailing_edge: TrailingEdge) -> Blade:
         """Return the blade with another finish of its trailing edges."""
@@ -210,10 +213,6 @@ class Blade:
         """
         fixed = np.unique(np.concatenate([[0.0], self.eta, [1.0]]))
         return self._crowding.spans(fixed, whole(count, "stations", DefinitionError))
-
-    @cached_property
-    def _crowding(self) -> Crowding:
-        return Crowding.along(self.sections, len(self.u))
 
     def perturbed(
         self,

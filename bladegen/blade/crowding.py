@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.errors import DefinitionError
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Indices
 
 __all__ = ["Crowding"]
 
@@ -61,11 +61,15 @@ class Crowding:
         return cls(grid, np.concatenate([[0.0], np.cumsum(steps)]))
 
     @classmethod
-    def along(cls, sections: Callable[[Array], Array], landmarks: int) -> "Crowding":
-        """Measure a blade by its sections (k, landmarks, 3) as a function of span."""
+    def along(cls, sections: Callable[[Array, Indices], Array], landmarks: int) -> "Crowding":
+        """Measure a blade by some landmarks (k, m, 3) of its sections as a function of span.
+
+        As many are asked for from either end, and each with the one that lies opposite.
+        """
         grid = np.linspace(0.0, 1.0, RESOLVING_SPANS)
-        some = slice(None, None, max(1, landmarks // RESOLVING_LANDMARKS))
-        return cls.of(grid, sections(grid)[:, some])
+        some = np.arange(0, landmarks, max(1, landmarks // RESOLVING_LANDMARKS))
+        both = np.union1d(some, landmarks - 1 - some)
+        return cls.of(grid, sections(grid, both)[:, np.searchsorted(both, some)])
 
     def spans(self, fixed: Array, count: int) -> Array:
         """Return `count` increasing span fractions, `fixed` (increasing) among them.

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bladegen.airfoils.chord_lines import ChordLines
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.definition.blade_definition import Interpolant
@@ -74,69 +75,87 @@ class EdgeWidths:
         widths = splines.fit(sized).edge_width
         return cls(splines, join(knots, np.round(widths, DIGITS)))
 
-    def opening(
-        self, landmarks: Array, thickness: Array | None, q: Array
-    ) -> Callable[[Array], Array]:
-        """Return the map that brings sections (k, n, 2), at any points on them, to their width.
+    def wedges(self, curves: SectionCurves, thickness: Array | None, q: Array) -> "Wedges":
+        """Return the wedges that bring sections to their width at the path's parameter (k,).
 
         Widths hold once the sections are brought to unit chord and to `thickness` (k,).
         """
-        curves = self.splines.fit(landmarks)
         A, c = curves.normalising(thickness)
-        curves = curves.mapped(A, c)
-        wedges, back = Wedges.to(curves, self.over(q)), np.linalg.inv(A)
-        return lambda points: points + wedges(affine.restore(points, A, c)) @ back
+        lines = ChordLines.sized(curves, A, c, thickness)
+        return Wedges.between(curves, A, c, lines, self.over(q))
 
 
 @dataclass(frozen=True, eq=False)
 class Wedges:
-    """A wedge for each of k sections of unit chord.
+    """A wedge for each of k sections.
 
     Parameters
     ----------
-    nose, along : (k, 2) arrays
-        Leading edges, and the chord line's directions.
-    ends : (k, 2) array
-        Where along the chord the suction and the pressure side end.
-    lift : (k,) array
-        By how much either side moves away from the chord line at its end, in chords.
+    axis, start : (k, 2), (k,) arrays
+        Where a point is along the chord: x = point @ axis + start.
+    shift : (2, k, 2) array
+        By how much points of the suction and the pressure side would move at x = 1.
     """
 
-    nose: Array
-    along: Array
-    ends: Array
-    lift: Array
+    axis: Array
+    start: Array
+    shift: Array
 
     @classmethod
     def to(cls, curves: SectionCurves, width: Array) -> "Wedges":
-        """Return the wedges that bring sections to edge widths (k,) in chords."""
-        nose = curves.leading_edge
-        along = curves.trailing_edge - nose
-        along = along / np.linalg.norm(along, axis=-1, keepdims=True)
-        ends = (curves.points[:, [0, -1]] - nose[:, None]) @ along[..., None]
-        if not np.all(ends > AHEAD):
+        """Return the wedges that bring sections of unit chord to edge widths (k,) in chords."""
+        k = len(curves.points)
+        same = np.broadcast_to(np.eye(2), (k, 2, 2)), np.zeros((k, 2))
+        return cls.between(curves, *same, ChordLines.of(curves), width)
+
+    @classmethod
+    def between(
+        cls, curves: SectionCurves, A: Array, c: Array, lines: ChordLines, width: Array
+    ) -> "Wedges":
+        """Return the wedges of sections that maps A and c bring to unit chord, with those lines."""
+        along = lines.edge - lines.nose
+        along = along / np.hypot(along[:, 0], along[:, 1])[:, None]
+        normal = along[:, ::-1] * (-1.0, 1.0)
+        axis, to_nose = (A @ along[..., None])[..., 0], (c - lines.nose) * along
+        start = to_nose[:, 0] + to_nose[:, 1]
+        sides = curves.planes[..., [0, -1]].T  # (2, k, 2): where suction and pressure side end
+        ends = sides[..., 0] * axis[:, 0] + sides[..., 1] * axis[:, 1] + start
+        if not (ends > AHEAD).all():
             raise GeometryError(
                 f"trailing edge: a side of a section ends at {float(ends.min()):.3g} of its chord, "
                 f"must be behind {AHEAD:g}; are the airfoils' points in order?"
             )
-        return cls(nose, along, ends[..., 0], 0.5 * (width - curves.edge_width))
+        gap, across = sides[0] - sides[1], (A @ normal[..., None])[..., 0]
+        present = gap[:, 0] * across[:, 0] + gap[:, 1] * across[:, 1]
+        lift = 0.5 * (width - present) / _wedge(ends) * ((1.0,), (-1.0,))
+        back = (normal[:, None] @ np.linalg.inv(A))[:, 0]
+        return cls(axis, start, lift[..., None] * back)
 
     def __call__(self, points: Array) -> Array:
         """Return by how much points of sections (k, n, 2) move, (k, n, 2).
 
         The first n // 2 points are those of the suction side, the last n // 2 the pressure side's.
         """
-        half = points.shape[1] // 2
-        x = ((points - self.nose[:, None]) @ self.along[..., None])[..., 0]
-        share = _wedge(x)
-        share[:, :half] *= (self.lift / _wedge(self.ends[:, 0]))[:, None]
-        share[:, half:] *= -(self.lift / _wedge(self.ends[:, 1]))[:, None]
-        normal = np.stack([-self.along[:, 1], self.along[:, 0]], axis=-1)
-        return share[..., None] * normal[:, None]
+        return self.opened(points)[0] - points
+
+    def opened(self, points: Array) -> tuple[Array, int]:
+        """Return points of sections (k, n, 2) moved, and how many from either end did move.
+
+        The first n // 2 points are those of the suction side, the last n // 2 the pressure side's.
+        """
+        planes = np.array(points.transpose(2, 0, 1), order="C")
+        n = planes.shape[2]
+        x = (self.axis[:, None] @ planes.swapaxes(0, 1))[:, 0] + self.start[:, None]
+        behind = np.asarray((x > AHEAD).any(axis=0))
+        both = behind[: n // 2] | behind[: n - n // 2 - 1 : -1]
+        count = int(np.max(np.arange(1, n // 2 + 1) * both, initial=0))
+        for shift, side in zip(self.shift, (slice(count), slice(n - count, n)), strict=True):
+            planes[..., side] += shift.T[..., None] * _wedge(x[:, side])
+        return planes.transpose(1, 2, 0), count
 
 
 def _wedge(x: Array) -> Array:
     """Return the wedge's share at places x along the chord: 0 ahead, 1 at the edge, C2."""
     f = np.maximum(x - AHEAD, 0.0) / (1.0 - AHEAD)
-    share: Array = f**3 * (2.0 - f)
+    share: Array = f * f * f * (2.0 - f)
     return share

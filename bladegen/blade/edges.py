@@ -18,7 +18,7 @@ import numpy as np
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array
 
-__all__ = ["MINIMUM_EDGE", "AsGiven", "MinimumThickness", "Sharp", "TrailingEdge"]
+__all__ = ["MINIMUM_EDGE", "PAIRWISE", "AsGiven", "MinimumThickness", "Sharp", "TrailingEdge"]
 
 WINDOW = (0.5, 0.8)  # of chord: nothing moves ahead of the first, all moves behind the second
 LEAST_WEDGE = 0.25  # of the edge's height: what a closed edge keeps at the window's end
@@ -103,17 +103,21 @@ class MinimumThickness:
             )
 
     def __call__(self, profiles: Array, chord: Array) -> Array:
-        half, middle = _halves(profiles)
-        self.require_room(2.0 * half[..., 1].max(axis=1), chord)
-        given = 0.5 * (profiles[:, 0, 1] - profiles[:, -1, 1])
-        missing = (0.5 * self.width(chord)) ** 2 - given**2
-        thin = np.flatnonzero(missing > 0)
-        half, middle = half[thin], middle[thin]
-        window = _window(middle) * missing[thin, None]
-        half[..., 1] = np.sqrt(half[..., 1] ** 2 + window)
-        result = profiles.copy()
-        result[thin] = _joined(profiles[thin], half, middle)
-        return result
+        planes = np.array(profiles.transpose(2, 0, 1), order="C")
+        m = planes.shape[2] // 2
+        height = planes[1, :, :m] - planes[1, :, : -m - 1 : -1]
+        self.require_room(height.max(axis=1), chord)
+        missing = (0.5 * self.width(chord)) ** 2 - (0.5 * height[:, 0]) ** 2
+        thin = missing > 0
+        along = planes[0, :, :m] + planes[0, :, : -m - 1 : -1]
+        behind = int(np.max(np.arange(1, m + 1) * (along > 2.0 * WINDOW[0]).any(axis=0)))
+        if behind and thin.any():
+            half = 0.5 * height[:, :behind]
+            window = _window(0.5 * along[:, :behind]) * np.where(thin, missing, 0.0)[:, None]
+            lift = np.where(thin[:, None], np.sqrt(half * half + window) - half, 0.0)
+            planes[1, :, :behind] += lift
+            planes[1, :, : -behind - 1 : -1] -= lift
+        return planes.transpose(1, 2, 0)
 
 
 MINIMUM_EDGE = MinimumThickness(0.002, most=0.01)  # what trailing edges are by default
@@ -134,12 +138,15 @@ class Sharp:
 
     def __call__(self, profiles: Array, chord: Array) -> Array:  # noqa: ARG002
         half, middle = _halves(profiles)
-        window, height = _window(middle), half[..., 1]
+        window, height = _window(middle[..., 0]), half[..., 1]
         edge = np.maximum(height[:, :1], 0.0)
         ahead = np.maximum(middle[:, :1, 0] - middle[..., 0], 0.0) / (1.0 - WINDOW[1])
         closed = _above(height - edge * window, LEAST_WEDGE * edge * window * ahead)
         share = np.divide(closed, height, out=np.ones_like(height), where=height > 0)
         return _joined(profiles, half * share[..., None], middle)
+
+
+PAIRWISE = (AsGiven, MinimumThickness, Sharp)  # what moves opposite landmarks, each pair by itself
 
 
 def _halves(profiles: Array) -> tuple[Array, Array]:
@@ -164,8 +171,8 @@ def _above(values: Array, least: Array) -> Array:
     return result
 
 
-def _window(middle: Array) -> Array:
-    """Return 0 ahead and 1 behind the window, C2 between, (k, m)."""
-    f = np.clip((middle[..., 0] - WINDOW[0]) / (WINDOW[1] - WINDOW[0]), 0.0, 1.0)
-    weight: Array = f**3 * (10.0 - 15.0 * f + 6.0 * f**2)
+def _window(along: Array) -> Array:
+    """Return 0 ahead and 1 behind the window, C2 between, at places along the chord."""
+    f = np.clip((along - WINDOW[0]) / (WINDOW[1] - WINDOW[0]), 0.0, 1.0)
+    weight: Array = f * f * f * (10.0 - (15.0 - 6.0 * f) * f)
     return weight

@@ -5,7 +5,6 @@ edges are brought to their width over span.  A `Loft` is what all variants of a 
 with it what it has computed.  Span fractions (k,) to sections (k, n, 2), not brought to size.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,7 +13,17 @@ import numpy as np
 from bladegen.airfoils.landmarks import Contour, Spacing, contour, landmark_parameters
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.edge_widths import EdgeWidths, Joining
-from bladegen.blade.paths import PATHS, Parameter, Path, PathMaker, SectionSpline, geodesic_path
+from bladegen.blade.joined import JoinedSections
+from bladegen.blade.paths import (
+    PATHS,
+    GeodesicPath,
+    Parameter,
+    Path,
+    PathMaker,
+    SectionSpline,
+    SplinePath,
+    geodesic_path,
+)
 from bladegen.definition.airfoil_findings import disagreeing, opened
 from bladegen.definition.blade_definition import BladeDefinition, Distribution, pchip
 from bladegen.definition.thickness import own_thickness
@@ -22,10 +31,13 @@ from bladegen.errors import DefinitionError, Finding
 from bladegen.shapes import affine
 from bladegen.support.arguments import amount, function, instance, one_of, whole
 from bladegen.support.arrays import Array, readonly
+from bladegen.support.recent import Recent
 from bladegen.support.values import state_of
 
 __all__ = ["Loft", "lofted"]
 
+REMEMBERED = 4  # sets of spans whose sections are kept; some 5 MB each for 100 x 401
+LARGEST = 200  # spans in a set that is kept
 SAME_SHAPE = 1e-10  # of the largest singular value; stations may repeat an airfoil
 
 
@@ -113,9 +125,30 @@ class Loft:
 
         Bases join over span.
         """
-        path = self.at(eta)
-        opening = self.opening(eta, *path)
-        return affine.standardise(opening(affine.restore(*path)))
+        return self.sections(eta).standardised
+
+    def sections(self, eta: Array) -> JoinedSections:
+        """Return the path's sections at span fractions (k,), their edges brought to width."""
+        if len(eta) > LARGEST:
+            return self._sections(eta)
+        return self._recent.get(eta.tobytes(), lambda: self._sections(eta))
+
+    @cached_property
+    def _recent(self) -> Recent[JoinedSections]:
+        return Recent(REMEMBERED)
+
+    def _sections(self, eta: Array) -> JoinedSections:
+        path, spline = self._joined
+        q, ruling = self.parameter(eta), self.ruling(eta)
+        M, b = spline(q)
+        if isinstance(path, GeodesicPath | SplinePath):
+            points = path.combined(q).mapped(M, b)
+        else:
+            points = affine.restore(path(q), M, b)
+        curves, wedges = self.splines.fit(points), None
+        if self.edge_width is not None:
+            wedges = self._widths.wedges(curves, ruling, q)
+        return JoinedSections.of(curves, ruling, wedges)
 
     @cached_property
     def _widths(self) -> EdgeWidths:
@@ -125,12 +158,11 @@ class Loft:
             airfoils, self.splines, thickness, self.parameter.knots, self.edge_width or pchip
         )
 
-    def opening(self, eta: Array, X: Array, M: Array, b: Array) -> Callable[[Array], Array]:
-        """Return the map that brings the path's sections, at any points, to their edge's width."""
-        if self.edge_width is None:
-            return lambda points: points
-        landmarks = affine.restore(X, M, b)
-        return self._widths.opening(landmarks, self.ruling(eta), self.parameter(eta))
+    def finer(self, joined: JoinedSections, eta: Array, u: Array) -> Array:
+        """Return points (k, m, 2) at landmark parameters (m,) of the sections at spans (k,)."""
+        path, wedges = self.at(eta), joined.wedges
+        points = affine.restore(self.between(u) @ path[0], *path[1:])
+        return points if wedges is None else wedges.opened(points)[0]
 
     def ruling(self, eta: Array) -> Array | None:
         """Return the relative thickness that rules at span fractions (k,), if one does."""

@@ -12,14 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from bladegen.blade.crowding import Crowding
+from bladegen.blade.edges import PAIRWISE
 from bladegen.blade.spans import both_sides, landmarks_at, span_fractions
-from bladegen.support.arrays import Array, ArrayLike
+from bladegen.errors import GeometryError
+from bladegen.support.arrays import Array, ArrayLike, Indices
 from bladegen.support.services import service, shown_by
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
-__all__ = ["export", "html", "mesh", "plot", "point", "volume"]
+__all__ = ["crowding", "export", "html", "mesh", "plot", "point", "volume"]
 
 Tip = Callable[..., Any]
 
@@ -80,6 +83,22 @@ def point(blade: Any, eta: ArrayLike, u: ArrayLike) -> Array:
     symmetric, column = both_sides(places)
     points: Array = blade.sections(own, symmetric)[row.reshape(spans.shape), column]
     return points
+
+
+def crowding(blade: Any) -> Crowding:
+    """How closely a blade's sections should stand to resolve it."""
+
+    def at_landmarks(eta: Array, some: Indices) -> Array:
+        if isinstance(blade.trailing_edge, PAIRWISE):
+            try:
+                watched: Array = blade.placed(blade.shape.at_landmarks(eta, some), eta)
+                return watched
+            except GeometryError:  # the thickest landmarks may not be among them
+                pass
+        sections: Array = blade.sections(eta)
+        return sections[:, some]
+
+    return Crowding.along(at_landmarks, len(blade.u))
 
 
 def export(blade: Any, path: str | Path, **options: Any) -> Path:

@@ -10,13 +10,14 @@ passes through the same stations smoothly, by a spline of the logarithms at thei
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
+from bladegen.blade.combined import Combined
 from bladegen.definition.blade_definition import Distribution, Interpolant, pchip
 from bladegen.shapes import affine, grassmann
-from bladegen.support.arrays import Array, Mask
+from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.values import brief
 
 __all__ = ["PATHS", "GeodesicPath", "Parameter", "Path", "SectionSpline", "SplinePath"]
@@ -121,14 +122,32 @@ class GeodesicPath:
     def _run(self) -> Interpolant:
         return pchip(self.knots, self.distances)
 
-    def __call__(self, q: Array) -> Array:
+    @cached_property
+    def _columns(self) -> tuple[Array, Array]:
+        """What each segment's points are made of, (s - 1, 4, n), and the steps' D^T D."""
+        return np.concatenate(
+            [self.X[:-1].mT, self._steps.mT], axis=1
+        ), self._steps.mT @ self._steps
+
+    def _place(self, q: Array) -> tuple[Indices, Array]:
+        """Return which segments hold q, and the fractions of their length (k, 1, 1)."""
         k = _segment(self.knots, q)
         length = self.distances[k + 1] - self.distances[k]
         fraction = np.divide(
             self._run(q) - self.distances[k], length, out=np.zeros_like(q), where=length > 0
         )
-        fraction = np.where(q >= self.knots[k + 1], 1.0, fraction)
-        return grassmann.exp(self.X[k], fraction[:, None, None] * self._steps[k])
+        return k, np.where(q >= self.knots[k + 1], 1.0, fraction)[:, None, None]
+
+    def __call__(self, q: Array) -> Array:
+        k, fraction = self._place(q)
+        return grassmann.exp(self.X[k], fraction * self._steps[k])
+
+    def combined(self, q: Array) -> Combined:
+        """Return the bases at parameters (k,) as combinations."""
+        k, fraction = self._place(q)
+        columns, squares = self._columns
+        cosine, sinc = grassmann.exp_factors(fraction**2 * squares[k])
+        return Combined(columns, k, np.concatenate([cosine, fraction * sinc], axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,15 +177,32 @@ class SplinePath:
     __repr__ = brief
 
     @cached_property
-    def _logs(self) -> Interpolant:
+    def _logs(self) -> Any:
         from scipy.interpolate import CubicHermiteSpline
 
         logs = grassmann.log(self.mean[None], self.X)
-        spline: Interpolant = CubicHermiteSpline(self.knots, logs, _slopes(self.knots, logs))
-        return spline
+        return CubicHermiteSpline(self.knots, logs, _slopes(self.knots, logs))
+
+    @cached_property
+    def _columns(self) -> tuple[Array, Array]:
+        """What each segment's points are made of, (s - 1, 10, n), and the powers' products."""
+        powers = np.moveaxis(self._logs.c, 0, 1)
+        s, _, n, _ = powers.shape
+        mean = np.broadcast_to(self.mean.T, (s, 2, n))
+        rows = powers.mT.reshape(s, 8, n)
+        return np.concatenate([mean, rows], axis=1), rows @ rows.mT
 
     def __call__(self, q: Array) -> Array:
         return grassmann.exp(self.mean[None], self._logs(q))
+
+    def combined(self, q: Array) -> Combined:
+        """Return the bases at parameters (k,) as combinations."""
+        k = _segment(self.knots, q)
+        columns, products = self._columns
+        powers = (q - self.knots[k])[:, None] ** (3.0, 2.0, 1.0, 0.0)
+        scale = (powers[:, :, None, None] * np.eye(2)).reshape(len(q), 8, 2)
+        cosine, sinc = grassmann.exp_factors(scale.mT @ (products[k] @ scale))
+        return Combined(columns, k, np.concatenate([cosine, scale @ sinc], axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,6 +293,6 @@ def _slopes(knots: Array, V: Array) -> Array:
     return slopes
 
 
-def _segment(knots: Array, q: Array) -> Array:
+def _segment(knots: Array, q: Array) -> Indices:
     """Return the index of the segment that holds each q."""
     return np.clip(np.searchsorted(knots, q, side="right") - 1, 0, len(knots) - 2)

@@ -105,22 +105,17 @@ def direction(axis: ReferenceAxis, eta: Array) -> Array:
 def turn(start: Array, end: Array) -> Array:
     """Return the smallest rotation that takes unit vectors `start` to `end`, acting on rows."""
     c = np.sum(start * end, axis=-1)[..., None, None]
-    cross = crossing(np.cross(start, end))
+    outer = start[..., :, None] * end[..., None, :]
+    cross = outer - outer.mT  # `crossing` of the cross product
     rotation: Array = np.eye(3) + cross + cross @ cross / (1.0 + c)
     return rotation
 
 
 def crossing(v: Array) -> Array:
     """Return the matrices (..., 3, 3) whose product from the right is that with vectors v."""
-    zero = np.zeros(v.shape[:-1])
-    matrices: Array = np.stack(
-        [
-            np.stack([zero, v[..., 2], -v[..., 1]], axis=-1),
-            np.stack([-v[..., 2], zero, v[..., 0]], axis=-1),
-            np.stack([v[..., 1], -v[..., 0], zero], axis=-1),
-        ],
-        axis=-2,
-    )
+    matrices: Array = np.zeros((*v.shape, 3))
+    matrices[..., 0, 1], matrices[..., 1, 2], matrices[..., 2, 0] = v[..., 2], v[..., 0], v[..., 1]
+    matrices -= matrices.mT
     return matrices
 
 
@@ -195,7 +190,11 @@ class Planform:
             blade.axis(eta),
             self.frames(eta),
         )
-        return profiles @ axes + start[..., None, :]
+        planes = np.ones((3, *profiles.shape[:-1]))
+        planes[:2] = profiles.transpose(2, 0, 1)
+        maps = np.concatenate([axes, start[:, None]], axis=1)
+        placed: Array = planes.transpose(1, 2, 0) @ maps
+        return placed
 
 
 def placement(
@@ -220,7 +219,8 @@ def placement(
         A section's points are ``profile @ axes + start``.
     """
     c, s = np.cos(twist), np.sin(twist)
-    turn = np.stack([np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1)], axis=-2)
+    turn = np.empty((*c.shape, 2, 2))
+    turn[..., 0, 0], turn[..., 0, 1], turn[..., 1, 0], turn[..., 1, 1] = s, c, c, -s
     axes = turn @ frames[..., :2, :]  # rows: along the chord, normal to it
     start = axis + (offset[..., None, :] @ axes)[..., 0, :]
     return chord[..., None, None] * axes, start

@@ -17,7 +17,15 @@ from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array, Indices
 
-__all__ = ["CHARACTERISTICS", "KINDS", "ODD", "Oddities", "characteristics", "oddities"]
+__all__ = [
+    "CHARACTERISTICS",
+    "KINDS",
+    "ODD",
+    "Oddities",
+    "characteristics",
+    "characteristics_along",
+    "oddities",
+]
 
 # what `characteristics` fills: the nose's turning back [rad], its radius [chord], inflections of
 # either side, the mean line's average [chord] and its angle at the tail [rad]
@@ -45,12 +53,16 @@ SMALLER = 2  # of `KINDS`: here the figure is too small, elsewhere too large
 
 def characteristics(curves: SectionCurves, flat: Array) -> Array:
     """Return `CHARACTERISTICS` (k, 6) of sections, their heights times factors (k,)."""
+    lines = np.concatenate([curves.leading_edge, curves.trailing_edge], axis=-1)
+    return characteristics_along(lines, curves.points, flat)
+
+
+def characteristics_along(lines: Array, points: Array, flat: Array) -> Array:
+    """Return `CHARACTERISTICS` (k, 6) of sections (k, n, 2) along chord lines (k, 4)."""
     from bladegen.airfoils.characteristics import characteristics_of
 
-    points = np.ascontiguousarray(curves.points.mT)
-    lines = np.concatenate([curves.leading_edge, curves.trailing_edge], axis=-1)
     result: Array = np.empty((len(points), len(CHARACTERISTICS)))
-    characteristics_of(points, lines, np.array(flat), result)
+    characteristics_of(np.ascontiguousarray(points.mT), lines, np.array(flat), result)
     return result
 
 

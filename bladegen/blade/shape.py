@@ -7,14 +7,20 @@ computed.
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
+from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.blade.deformation import Deformation, Thickening
+from bladegen.blade.joined import JoinedSections
 from bladegen.blade.loft import Loft
 from bladegen.blade.spans import landmarks_at, span_fractions
 from bladegen.shapes import affine
-from bladegen.support.arrays import Array, ArrayLike
+from bladegen.support.arrays import Array, ArrayLike, Indices
 
 __all__ = ["Shape"]
+
+CHUNK = 250  # spans at once, whose sections a processor's cache holds
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,23 +53,34 @@ class Shape:
         """Return unit-chord sections (..., n, 2): see `Blade.profiles`."""
         spans = span_fractions(eta)
         u = u if u is None else landmarks_at(u, 1)
-        flat, loft = spans.reshape(-1), self.loft
-        path = loft.at(flat)
-        opening = loft.opening(flat, *path)
-        points = opening(affine.restore(*path))
-        wanted = self._target(flat, points)
-        finer = points
-        if u is not None:
-            finer = opening(affine.restore(loft.between(u) @ path[0], *path[1:]))
-        if self.deformations:
-            stages = self._stages(flat, points)
-            change = stages[-1] - points
-            finer = finer + (change if u is None else loft.splines.values(u) @ change)
-            A, c, *_ = self._restored(stages, wanted)
-        else:
-            A, c = loft.splines.normalising(points, wanted)
-        result = affine.restore(finer, A, c)
+        result = affine.restore(*self._sized(spans.reshape(-1), u))
         return result.reshape(*spans.shape, *result.shape[1:])
+
+    def at_landmarks(self, eta: Array, some: Indices) -> Array:
+        """Return some of the landmarks of the sections at span fractions (k,), (k, m, 2)."""
+        parts = []
+        for first in range(0, len(eta), CHUNK):
+            points, A, c = self._sized(eta[first : first + CHUNK], None)
+            parts.append(affine.restore(points[:, some], A, c))
+        return np.concatenate(parts)
+
+    def _sized(self, flat: Array, u: Array | None) -> tuple[Array, Array, Array]:
+        """Return sections (k, n, 2), and the maps that bring them to size and chord line."""
+        loft, joined = self.loft, self.loft.sections(flat)
+        wanted = self._target(flat, joined)
+        finer = joined.curves.points if u is None else loft.finer(joined, flat, u)
+        if self.deformations:
+            stages = self._stages(flat, joined)
+            points = stages[-1].points
+            finer = (
+                points
+                if u is None
+                else finer + loft.splines.values(u) @ (points - joined.curves.points)
+            )
+            A, c, *_ = self._restored(joined, stages, wanted)
+        else:
+            A, c = joined.curves.normalising(wanted)
+        return finer, A, c
 
     def relative_thickness(self, eta: ArrayLike) -> Array:
         """Return the relative thickness of the sections at `eta`."""
@@ -82,7 +99,7 @@ class Shape:
 
     def wanted_thickness(self, eta: Array) -> Array | None:
         """Return the relative thickness that rules at span fractions (k,), None if none does."""
-        return self._target(eta, affine.restore(*self.loft.shapes(eta)))
+        return self._target(eta, self.loft.sections(eta))
 
     def chord_lines(self, eta: Array, thickness: Array | None) -> tuple[ChordLines, Motions]:
         """Return chord lines of the sections at span fractions (k,), and how they got there.
@@ -90,41 +107,50 @@ class Shape:
         That is where these sections have them if they are brought to the relative `thickness`
         (k,), and the motions that the last deformation that keeps them took.
         """
-        stages = self._stages(eta, affine.restore(*self.loft.shapes(eta)))
-        return self._restored(stages, thickness)[2:]
+        joined = self.loft.sections(eta)
+        return self._restored(joined, self._stages(eta, joined), thickness)[2:]
+
+    def deformed(self, eta: Array) -> SectionCurves:
+        """Return the sections at span fractions (k,) deformed, not brought to size."""
+        return self._stages(eta, self.loft.sections(eta))[-1]
 
     def _deformed(self, X: Array, eta: Array) -> Array:
         for deformation in self.deformations:
             X = deformation(X, eta)
         return X
 
-    def _stages(self, eta: Array, points: Array) -> list[Array]:
-        """Return sections (k, n, 2) before and after each deformation, not brought to size."""
-        X, M, _ = affine.standardise(points)
-        stages = [points]
-        for deformation in self.deformations:
+    def _stages(self, eta: Array, joined: JoinedSections) -> list[SectionCurves]:
+        """Return sections before and after each deformation, not brought to size."""
+        stages = [joined.curves]
+        if not self.deformations:
+            return stages
+        X, M, _ = joined.standardised
+        first, *others = self.deformations
+        change = joined.carried(first.space).change(first.step(eta), M)
+        stages.append(self.loft.splines.fit(joined.curves.points + change))
+        if others:
+            X = first(X, eta)
+        for deformation in others:
             deformed = deformation(X, eta)
-            stages.append(stages[-1] + (deformed - X) @ M)
+            points = stages[-1].points + (deformed - X) @ M
+            stages.append(self.loft.splines.fit(points))
             X = deformed
         return stages
 
     def _restored(
-        self, stages: list[Array], thickness: Array | None
+        self, joined: JoinedSections, stages: list[SectionCurves], thickness: Array | None
     ) -> tuple[Array, Array, ChordLines, Motions]:
         """Return the maps that bring the last of `_stages` to size and to its chord line.
 
         The line is that of the stage before, but where a deformation leaves it as the paper
         does.  The lines and the last motions are returned besides.
         """
-        motions = Motions.none(len(stages[0]))
-        curves = self.loft.splines.fit(stages[0])
-        A, c = curves.normalising(thickness)
-        lines = ChordLines.of(curves.mapped(A, c))
+        motions = Motions.none(len(joined.curves.points))
+        A, c, lines = joined.sized(thickness)
         alone = lines.alone
-        for deformation, points in zip(self.deformations, stages[1:], strict=True):
-            curves = self.loft.splines.fit(points)
+        for deformation, curves in zip(self.deformations, stages[1:], strict=True):
             A, c = curves.normalising(thickness)
-            own = ChordLines.of(curves.mapped(A, c))
+            own = ChordLines.sized(curves, A, c, thickness)
             alone = alone & own.alone
             if deformation.chord_line == KEPT:
                 motions = own.onto(lines)
@@ -132,14 +158,14 @@ class Shape:
                 lines = own.moved(motions)
         return *motions.after(A, c), replace(lines, alone=alone), motions
 
-    def _target(self, eta: Array, points: Array) -> Array | None:
+    def _target(self, eta: Array, joined: JoinedSections) -> Array | None:
         """Return the relative thickness that sections shall have; None if nothing rules it.
 
         Without a distribution, a perturbed shape keeps the thickness it had.
         """
-        target = self.loft.ruling(eta)
+        target = joined.ruling
         if target is None and (self.deformations or self.thickenings):
-            target = self.loft.splines.fit(points).relative_thickness
+            target = joined.thickness
         if target is not None:
             for thickening in self.thickenings:
                 target = target * thickening(eta)

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from bladegen.airfoils.chord_lines import ChordLines
 from bladegen.blade.deformation import Deformation
-from bladegen.blade.sanity import ODD, Oddities, characteristics, oddities
+from bladegen.blade.sanity import ODD, Oddities, characteristics_along, oddities
 from bladegen.blade.shape import Shape
 from bladegen.curves.crossing import crossing_sections
 from bladegen.definition.blade_definition import BladeDefinition
@@ -36,11 +37,15 @@ def leaving(shape: Shape, deformation: Deformation, *, allowed: bool) -> tuple[F
         If one leaves them, and that is not allowed.
     """
     eta = _spans(shape)
-    plain, X, M, b = shape.shapes(eta)
+    joined = shape.loft.sections(eta)
     thickness = shape.wanted_thickness(eta)
-    if thickness is None:
-        thickness = shape.loft.splines.fit(affine.restore(plain, M, b)).relative_thickness
-    said = Domain.of(deformation.space, eta, X, thickness).said(deformation.step(eta))
+    thickness = joined.thickness if thickness is None else thickness
+    if shape.deformations:
+        own = deformation.space.encode(shape.shapes(eta)[1])
+    else:
+        own = joined.carried(deformation.space).coordinates
+    domain = Domain.around(deformation.space, eta, own, thickness)
+    said = domain.said(deformation.step(eta))
     if said and not allowed:
         coarse = deformation.space.outside(deformation.t.values)
         raise PerturbationError(f"{coarse or f't: {said}'}; {BEYOND}")
@@ -105,45 +110,31 @@ class Trial:
         section keeps of what it was: 1 unchanged, 0 turned by a right angle or shrunk to nothing.
         Returned besides is what is odd about them, where their shape is another.
         """
-        shape, splines = self.shape, self.shape.loft.splines
-        plain, X, M, b = shape.shapes(eta)
-        points, given = affine.restore(X, M, b), affine.restore(plain, M, b)
-        crossing = crossing_sections(points)
-        curves, curves_before = splines.fit(points), splines.fit(given)
-        own, before = curves.relative_thickness, curves_before.relative_thickness
-        thin = np.flatnonzero(~(own > LOST_THICKNESS * before))
+        shape = self.shape
+        joined = shape.loft.sections(eta)
+        before, curves = joined.before, shape.deformed(eta)
+        same = curves is before.curves
+        crossing = before.crossing if same else crossing_sections(curves.points)
+        own, given = curves.relative_thickness, before.curves.relative_thickness
+        thin = np.flatnonzero(~(own > LOST_THICKNESS * given))
         for places, fault in ((crossing, "crosses itself"), (thin, "loses its thickness")):
             if len(places):
                 said = ", ".join(f"{k} = {v}" for k, v in self.asked.items() if k != "window")
                 raise PerturbationError(
                     f"{self._accused(float(eta[places[0]]))} {fault}{said and ' with ' + said}"
                 )
-        shares = np.minimum(
-            _kept(np.diff(points, axis=1), np.diff(given, axis=1)),
-            _kept(_across(points), _across(given)),
-        )
+        shares = before.kept(curves)
         if not shape.deformations:
             return shares, None
-        ruling = shape.loft.ruling(eta)
-        ruling = before if ruling is None else ruling  # all are held against each other at that
-        wanted = ruling.copy()
+        ruling = joined.thickness  # all are held against each other at that
+        wanted = ruling
         for thickening in shape.thickenings:
-            wanted *= thickening(eta)
-        sized = curves.mapped(*curves.normalising(wanted))
-        looks = characteristics(sized, ruling / wanted)
-        looks_before = characteristics(curves_before, ruling / before)
-        return shares, oddities(looks, looks_before, ruling)
-
-
-def _across(points: Array) -> Array:
-    """Return the steps from the pressure to the suction side of sections (k, n, 2)."""
-    half = points.shape[1] // 2
-    return points[:, 1:half] - points[:, -2:half:-1]
-
-
-def _kept(steps: Array, before: Array) -> Array:
-    """Return the least share that steps (k, m, 2) keep of steps before, (k,)."""
-    along, length = np.sum(steps * before, axis=-1), np.sum(before * before, axis=-1)
-    shares = np.divide(along, length, out=np.ones_like(along), where=length > 0.0)
-    least: Array = shares.min(axis=1)
-    return least
+            wanted = wanted * thickening(eta)
+        A, c = curves.normalising(wanted)
+        lines = ChordLines.sized(curves, A, c, wanted)
+        looks = characteristics_along(
+            np.concatenate([lines.nose, lines.edge], axis=1),
+            affine.restore(curves.points, A, c),
+            ruling / wanted,
+        )
+        return shares, oddities(looks, before.looks, ruling)

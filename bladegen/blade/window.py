@@ -12,7 +12,6 @@ from bladegen.support.arrays import Array
 
 __all__ = ["Window"]
 
-ROUND = 0.02  # of the chord; an airfoil nearer to its circle than this is round
 RAMP = 33  # span fractions that resolve a window's rise
 
 
@@ -33,7 +32,7 @@ class Window:
     @classmethod
     def beyond_circles(cls, stations: Sequence[Station]) -> "Window":
         """Rise from the last round station to the first lifting one; 1 all over without any."""
-        lifting = [not _is_round(station) for station in stations]
+        lifting = [not station.airfoil.is_round for station in stations]
         first = lifting.index(True) if True in lifting else len(stations) - 1
         if first == 0:
             return cls()
@@ -50,12 +49,3 @@ class Window:
     def with_ramp(self, grid: Array) -> Array:
         """Return a grid united with span fractions that resolve the rise."""
         return united(grid, np.linspace(self.start, self.end, RAMP))
-
-
-def _is_round(station: Station) -> bool:
-    """Tell whether an airfoil is a circle, whole or cut open at its edge."""
-    points = station.airfoil.coordinates
-    low, high = points.min(axis=0), points.max(axis=0)
-    size = float(np.max(high - low))
-    radius = np.linalg.norm(points - 0.5 * (low + high), axis=1)
-    return bool(np.all(np.abs(radius - 0.5 * size) < ROUND * size))

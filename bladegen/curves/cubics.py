@@ -11,9 +11,16 @@ import numpy as np
 from bladegen.curves.roots import PARAMETER_TOLERANCE, falling
 from bladegen.support.arrays import Array
 
-__all__ = ["Cubics"]
+__all__ = ["Cubics", "pieces"]
 
 WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
+
+
+def pieces(start: Array, end: Array, slope: Array, last: Array) -> tuple[Array, ...]:
+    """Return cubics from 0 to 1 between values (...) with slopes there, constant term first."""
+    secant = end - start
+    bend = last + slope - 2.0 * secant
+    return start, slope, secant - slope - bend, bend
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ import numpy as np
 
 from bladegen.support.arrays import Array, Mask
 
-__all__ = ["FLAT", "cross", "graphs", "ladders", "once_back_and_forth", "turning_twice"]
+__all__ = ["FLAT", "graphs", "ladders", "once_back_and_forth", "turning_twice"]
 
 APART = 1e-9  # chord; sides closer than this are left to the exact test
 FLAT = -1e-14  # chord^2; closed edges make triangles of no area, to rounding
@@ -24,18 +24,15 @@ ANGLES = np.linspace(0.0, np.pi, 8, endpoint=False)
 def ladders(points: Array) -> Mask:
     """Tell which contours (..., n, 2) are proved sound by triangles between their sides."""
     middle = points.shape[-2] // 2
-    upper, lower = points[..., : middle + 1, :], points[..., : -middle - 2 : -1, :]
-    rungs = upper - lower  # from the pressure to the suction side
-    below = cross(rungs[..., :-1, :], np.diff(lower, axis=-2))
-    above = cross(rungs[..., 1:, :], np.diff(upper, axis=-2))
-    turned: Mask = np.minimum(below, above).min(axis=-1) >= FLAT
-    return turned & once_back_and_forth(points[..., 0])
-
-
-def cross(a: Array, b: Array) -> Array:
-    """Return twice the area of the triangles of vectors (..., 2), positive counter-clockwise."""
-    area: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return area
+    x, y = points[..., 0], points[..., 1]
+    xs = x[..., : middle + 1], x[..., : -middle - 2 : -1]
+    ys = y[..., : middle + 1], y[..., : -middle - 2 : -1]
+    across, up = xs[0] - xs[1], ys[0] - ys[1]  # from the pressure to the suction side
+    turned = np.ones(x.shape[:-1], dtype=bool)
+    for along, rise, at in ((xs[1], ys[1], slice(None, -1)), (xs[0], ys[0], slice(1, None))):
+        area = across[..., at] * np.diff(rise) - up[..., at] * np.diff(along)
+        turned &= area.min(axis=-1) >= FLAT
+    return turned & once_back_and_forth(x)
 
 
 def once_back_and_forth(x: Array) -> Mask:

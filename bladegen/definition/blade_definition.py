@@ -7,6 +7,7 @@ the reference axis is given on the same grid.  Layout and names follow windIO.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -33,6 +34,7 @@ __all__ = [
 ]
 
 MIN_AIRFOIL_POINTS = 3
+ROUND = 0.02  # of the chord; an airfoil nearer to its circle than this is round
 SMALLEST_SIZE = 1e-6  # m of a chord, chords of a thickness; a tip may run out to a point, all but
 SMALLEST_RISE = 1e-9  # m, of the axis' z from one grid point to the next
 THICKNESS_RIPPLE = 1e-4  # published curves ripple by 1e-5 about the thinnest airfoil (DTU 10 MW)
@@ -97,6 +99,14 @@ class Airfoil:
 
     __eq__ = equal
     __hash__ = hashed
+
+    @cached_property
+    def is_round(self) -> bool:
+        """Whether it is a circle, whole or cut open at its edge."""
+        low, high = self.coordinates.min(axis=0), self.coordinates.max(axis=0)
+        size = float(np.max(high - low))
+        radius = np.linalg.norm(self.coordinates - 0.5 * (low + high), axis=1)
+        return bool(np.all(np.abs(radius - 0.5 * size) < ROUND * size))
 
     def __repr__(self) -> str:
         thick = self.relative_thickness

@@ -10,7 +10,6 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.shapes import affine
 from bladegen.support.arrays import Array
 from bladegen.variants.batch import SectionBatch
 
@@ -40,8 +39,7 @@ class Outline:
         blade, parts, eta = self.batch.blade, self.batch.parts, self.batch.eta
         loft = blade.shape.loft
         splined = parts.values[:, :-1] @ loft.splines.values(self.u).T
-        path = loft.at(eta)
-        finer = loft.opening(eta, *path)(affine.restore(loft.between(self.u) @ path[0], *path[1:]))
+        finer = loft.finer(loft.sections(eta), eta, self.u)
         _, _, M, b = parts.shapes
         own = ((finer - b[:, None]) @ np.linalg.inv(M)).mT - splined[:, :2]
         return np.concatenate([splined, own, np.ones((len(own), 1, len(self.u)))], axis=1)

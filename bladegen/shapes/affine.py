@@ -8,6 +8,7 @@ any leading axes: xy and X are (..., n, 2), M is (..., 2, 2), b is (..., 2).
 import numpy as np
 
 from bladegen.errors import GeometryError
+from bladegen.shapes.small_matrices import exp
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array, mapped
 
@@ -121,15 +122,16 @@ def polar(M: Array) -> tuple[Array, Array]:
 
 def from_polar(angle: Array, log_stretch: Array) -> Array:
     """Return R(angle) @ exp(log_stretch), the inverse of `polar`; never singular."""
-    w, V = np.linalg.eigh(log_stretch)
-    M: Array = _rotation(angle) @ ((V * np.exp(w)[..., None, :]) @ V.mT)
+    M: Array = _rotation(angle) @ exp(log_stretch)
     return M
 
 
 def _rotation(angle: Array) -> Array:
     """Return [[cos, -sin], [sin, cos]], shape (..., 2, 2)."""
     c, s = np.cos(angle), np.sin(angle)
-    return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
+    result: Array = np.empty((*c.shape, 2, 2))
+    result[..., 0, 0], result[..., 0, 1], result[..., 1, 0], result[..., 1, 1] = c, -s, s, c
+    return result
 
 
 def thickness(s: Array) -> Array:

@@ -43,7 +43,11 @@ class Domain:
     @classmethod
     def of(cls, space: ShapeSpace, eta: Array, shapes: Array, thickness: Array) -> "Domain":
         """Return that of shapes (k, n, 2) of relative thickness (k,)."""
-        own = space.encode(shapes)
+        return cls.around(space, eta, space.encode(shapes), thickness)
+
+    @classmethod
+    def around(cls, space: ShapeSpace, eta: Array, own: Array, thickness: Array) -> "Domain":
+        """Return that of shapes of coordinates (k, r) and of relative thickness (k,)."""
         thick = (thickness > THICK)[:, None]
         low = np.where(thick, -np.inf, np.minimum(space.lower, own) - ROUNDING)
         high = np.where(thick, np.inf, np.maximum(space.upper, own) + ROUNDING)

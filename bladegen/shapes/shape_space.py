@@ -194,17 +194,15 @@ class ShapeSpace:
         ratio: Array = self.variances / self.variances.sum()
         return ratio
 
-    @property
+    @cached_property
     def lower(self) -> Array:
         """The least coordinate of the shapes along each mode, (r,)."""
-        lower: Array = self.coordinates.min(axis=0)
-        return lower
+        return readonly(self.coordinates.min(axis=0))
 
-    @property
+    @cached_property
     def upper(self) -> Array:
         """The largest coordinate of the shapes along each mode, (r,)."""
-        upper: Array = self.coordinates.max(axis=0)
-        return upper
+        return readonly(self.coordinates.max(axis=0))
 
     @property
     def extent(self) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from bladegen.support.arrays import Array
 
-__all__ = ["angle_over_sine", "apply", "cos", "sinc", "svd", "versine"]
+__all__ = ["angle_over_sine", "apply", "cos", "exp", "sinc", "svd", "versine"]
 
 
 def svd(A: Array) -> tuple[Array, Array, Array]:
@@ -18,7 +18,7 @@ def svd(A: Array) -> tuple[Array, Array, Array]:
     if A.shape[-1] != 2:
         general = np.linalg.svd(A)
         return general.U, general.S, general.Vh
-    (a, b), (c, d) = np.moveaxis(A, (-2, -1), (0, 1))
+    a, b, c, d = A[..., 0, 0], A[..., 0, 1], A[..., 1, 0], A[..., 1, 1]
     turn, mirror = 0.5 * np.arctan2(c - b, a + d), 0.5 * np.arctan2(c + b, a - d)
     half_sum, half_difference = 0.5 * np.hypot(a + d, c - b), 0.5 * np.hypot(a - d, c + b)
     smaller = half_sum - half_difference
@@ -31,7 +31,9 @@ def svd(A: Array) -> tuple[Array, Array, Array]:
 
 def _columns(a: Array, b: Array, c: Array, d: Array) -> Array:
     """Return matrices with the columns (a, b) and (c, d)."""
-    return np.stack([np.stack([a, c], axis=-1), np.stack([b, d], axis=-1)], axis=-2)
+    result: Array = np.empty((*a.shape, 2, 2))
+    result[..., 0, 0], result[..., 0, 1], result[..., 1, 0], result[..., 1, 1] = a, c, b, d
+    return result
 
 
 def apply(f: Callable[[Array], Array], A: Array) -> Array:
@@ -41,7 +43,7 @@ def apply(f: Callable[[Array], Array], A: Array) -> Array:
     their difference times (A - m) / d: no eigenvectors are needed.
     """
     if A.shape[-1] == 2:
-        (a, b), (_, d) = np.moveaxis(A, (-2, -1), (0, 1))
+        a, b, d = A[..., 0, 0], A[..., 0, 1], A[..., 1, 1]
         middle, half = 0.5 * (a + d), 0.5 * (a - d)
         reach = np.hypot(half, b)
         low, high = f(np.maximum(middle - reach, 0.0)), f(np.maximum(middle + reach, 0.0))
@@ -51,6 +53,19 @@ def apply(f: Callable[[Array], Array], A: Array) -> Array:
     w, V = np.linalg.eigh(A)
     result: Array = (V * f(np.maximum(w, 0.0))[..., None, :]) @ V.mT
     return result
+
+
+def exp(A: Array) -> Array:
+    """Return the exponentials of the symmetric matrices `A`, shape (..., 2, 2).
+
+    With eigenvalues m - d and m + d that is e^m times cosh d plus sinh d / d times A - m.
+    """
+    a, b, d = A[..., 0, 0], A[..., 0, 1], A[..., 1, 1]
+    half, scale = 0.5 * (a - d), np.exp(0.5 * (a + d))
+    reach = np.hypot(half, b)
+    mean = scale * np.cosh(reach)
+    rate = scale * np.divide(np.sinh(reach), reach, out=np.ones_like(reach), where=reach > 0)
+    return _columns(mean + rate * half, rate * b, rate * b, mean - rate * half)
 
 
 def cos(squared: Array) -> Array:

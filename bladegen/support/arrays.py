@@ -31,11 +31,9 @@ def mapped(points: Array, A: Array, c: Array) -> Array:
         The maps.
     """
     lead = np.broadcast_shapes(points.shape[:-2], A.shape[:-2], c.shape[:-1])
-    result: Array = np.empty((*lead, *points.shape[-2:]))
-    for j in (0, 1):  # columns are five times as fast as products of matrices so narrow
-        result[..., j] = (
-            points[..., 0] * A[..., 0, j, None]
-            + points[..., 1] * A[..., 1, j, None]
-            + c[..., j, None]
-        )
-    return result
+    planes: Array = np.empty((2, *lead, points.shape[-2]))  # all x, then all y: quick to work with
+    inner = tuple(range(1, planes.ndim - 1))
+    np.matmul(A.mT, points.mT, out=planes.transpose(*inner, 0, -1))
+    planes[0] += c[..., 0, None]
+    planes[1] += c[..., 1, None]
+    return planes.transpose(*inner, -1, 0)

@@ -8,8 +8,8 @@ opposite.  Splines are linear in features (`batch`), and so are their slopes at 
 from math import copysign
 from typing import NamedTuple
 
+from bladegen.airfoils.noses import SAME_NOSE
 from bladegen.airfoils.resizing import RIVAL
-from bladegen.airfoils.section_curves import SAME_NOSE
 from bladegen.curves.plane_maps import Numbers, turned
 from bladegen.curves.roots import ITERATIONS, PARAMETER_TOLERANCE
 from bladegen.support.arrays import Array

@@ -67,15 +67,16 @@ def fair(points: Array, tolerance: float = TOLERANCE) -> Array:
     rows = _third_differences(t)
     stiffness = _banded(rows)
     roughness = np.sum(_applied(rows, points) ** 2) / len(points)
-    weight = np.maximum(0.01 * roughness / bound**2, SOFTEST * stiffness[-1])
+    softest, columns = SOFTEST * stiffness[-1], np.ascontiguousarray(points.T)
+    weight = np.maximum(0.01 * roughness / bound**2, softest)
     for _ in range(ITERATIONS):
-        moved = _smoothed(stiffness, weight, points) - points
-        share = np.hypot(*moved.T) / bound
-        weight = np.maximum(weight * np.clip(share, 0.1, 10.0), SOFTEST * stiffness[-1])
-        weight[[0, -1]] = 1e6 * weight.max()
-    moved[[0, -1]] = 0.0
-    share = np.hypot(*moved.T) / bound
-    return np.asarray(points + moved / max(1.0, float(share.max())))
+        moved = _smoothed(stiffness, weight, columns) - columns
+        share = np.hypot(moved[0], moved[1]) / bound
+        weight = np.maximum(weight * np.minimum(np.maximum(share, 0.1), 10.0), softest)
+        weight[0] = weight[-1] = 1e6 * weight.max()
+    moved[:, [0, -1]] = 0.0
+    share = np.hypot(moved[0], moved[1]) / bound
+    return np.asarray(points + moved.T / max(1.0, float(share.max())))
 
 
 def _scatter(t: Array, points: Array) -> Array:
@@ -83,16 +84,17 @@ def _scatter(t: Array, points: Array) -> Array:
 
     Over the share of it that independent errors of one point and its neighbours would have.
     """
-    m = len(points) - 2 * NEIGHBOURS
-    middle = np.arange(m) + NEIGHBOURS
-    others = [k for k in range(-NEIGHBOURS, NEIGHBOURS + 1) if k]
-    missed, gain = points[middle].copy(), np.ones(m)
+    m, n = len(points) - 2 * NEIGHBOURS, 2 * NEIGHBOURS + 1
+    near = [t[k : k + m] for k in range(n)]
+    others = [k for k in range(n) if k != NEIGHBOURS]
+    missed, gain = points[NEIGHBOURS : NEIGHBOURS + m].copy(), np.ones(m)
+    ahead = [near[NEIGHBOURS] - near[b] for b in range(n)]
     for a in others:
         share = np.ones(m)
         for b in others:
             if b != a:
-                share *= (t[middle] - t[middle + b]) / (t[middle + a] - t[middle + b])
-        missed -= share[:, None] * points[middle + a]
+                share *= ahead[b] / (near[a] - near[b])
+        missed -= share[:, None] * points[a : a + m]
         gain += share**2
     scatter = np.hypot(*missed.T) / np.sqrt(gain)
     padded = np.pad(scatter, NEIGHBOURS + AROUND // 2, mode="edge")
@@ -126,16 +128,16 @@ def _banded(rows: Array) -> Array:
     for a in range(4):
         for b in range(a, 4):
             bands[3 + a - b, b : b + count] += rows[a] * rows[b]
-    return bands
+    return np.asfortranarray(bands)
 
 
-def _smoothed(stiffness: Array, weight: Array, points: Array) -> Array:
-    """Return the points of least roughness plus weighted squared moves."""
+def _smoothed(stiffness: Array, weight: Array, columns: Array) -> Array:
+    """Return the points (2, m) of least roughness plus weighted squared moves."""
     from scipy.linalg.lapack import dpbsv  # solveh_banded without its checks, a third of the time
 
-    bands = stiffness.copy()
+    bands = stiffness.copy(order="F")  # as LAPACK wants it, or it is copied once more
     bands[-1] += weight
-    _, solved, failed = dpbsv(bands, weight[:, None] * points, overwrite_ab=1, overwrite_b=1)
+    _, solved, failed = dpbsv(bands, (weight * columns).T, overwrite_ab=1, overwrite_b=1)
     if failed:
         raise GeometryError("fairing: points lie too unevenly; fairing=None keeps them")
-    return np.asarray(solved)
+    return np.asarray(solved).T

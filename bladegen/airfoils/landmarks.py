@@ -7,6 +7,7 @@ Each side is divided alike by arc length, so that landmark i is the same fractio
 on every airfoil, the root circle included.
 """
 
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bladegen.airfoils.fairing import fair
+from bladegen.curves.arc_lengths import lengths
 from bladegen.errors import GeometryError
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array, readonly
@@ -42,8 +44,8 @@ LARGEST = 1e6  # chords; points farther apart than this cannot be told from repe
 CORNER_TURN = np.radians(40.0)  # leading edges turn by up to 28 degrees a point in real files
 BLUNT_BASE = 0.02  # chords; corners nearer than this to the trailing edge end the sides
 BLUNT_MINIMUM = 1e-3  # chords; a base lower than this is rounding, not a flatback
+SETTLED = 1e-9  # chords; a step below that leaves its square
 REMEMBERED = 512  # contours, and sets of landmarks; some 20 MB
-_GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 def uniform(fraction: Array) -> Array:
@@ -199,9 +201,8 @@ def _fitted(points_in_bytes: bytes, fairing: float | None) -> Contour:
     given, opened = _without_base(oriented(coordinates))
     points = given if fairing is None else fair(given, fairing)
     spline = _spline(points)
-    middle = 0.5 * (points[0] + points[-1])
     moved = float(np.hypot(*(points - given).T).max())
-    return Contour(spline, _farthest(spline, middle), opened, moved)
+    return Contour(spline, _farthest(spline, 0.5 * (points[0] + points[-1])), opened, moved)
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -209,7 +210,7 @@ def _placed(curve: Contour, parameters_in_bytes: bytes) -> Array:
     """Return the points of a contour at landmark parameters; see `Contour.landmarks`."""
     parameters = np.frombuffer(parameters_in_bytes)
     knots = np.union1d(curve.spline.x, [curve.leading_edge])
-    arc = np.concatenate([[0.0], np.cumsum(_lengths(curve.spline, knots[:-1], knots[1:]))])
+    arc = np.concatenate([[0.0], np.cumsum(lengths(curve.spline, knots[:-1], knots[1:]))])
     nose = arc[np.searchsorted(knots, curve.leading_edge)]
     suction = 2.0 * parameters * nose
     pressure = nose + (2.0 * parameters - 1.0) * (arc[-1] - nose)
@@ -217,11 +218,13 @@ def _placed(curve: Contour, parameters_in_bytes: bytes) -> Array:
     segment = np.clip(np.searchsorted(arc, target, side="right") - 1, 0, len(knots) - 2)
     start, end = knots[segment], knots[segment + 1]
     t = start + (end - start) * (target - arc[segment]) / (arc[segment + 1] - arc[segment])
-    for _ in range(4):  # Newton; the parameter is nearly arc length, so two steps would do
-        excess = arc[segment] + _lengths(curve.spline, start, t) - target
+    for _ in range(4):  # Newton; the parameter is nearly arc length, so two steps are usual
+        excess = arc[segment] + lengths(curve.spline, start, t) - target
         speed = np.hypot(*curve.spline(t, 1).T)  # 0 where a contour turns back on itself
         step = np.divide(excess, speed, out=np.zeros_like(excess), where=speed > 0)
         t = np.clip(t - step, start, end)
+        if np.abs(step).max() <= SETTLED:
+            break
     return readonly(curve.spline(t))
 
 
@@ -281,18 +284,17 @@ def _farthest(spline: "PPoly", middle: Array) -> float:
     best = int(np.argmax(np.sum((spline(fine) - middle) ** 2, axis=1)))
     low, high = fine[max(best - 1, 0)], fine[min(best + 1, len(fine) - 1)]
 
+    first, last = np.clip(np.searchsorted(spline.x, (low, high)) - 1, 0, len(spline.x) - 2)
+    knots = spline.x[first : last + 1].tolist()
+    cubics = spline.c[:, first : last + 1].transpose(1, 2, 0).tolist()
+
     def slope(t: float) -> float:
-        return float(np.sum((spline(t) - middle) * spline(t, 1)))
+        i = max(bisect_right(knots, t) - 1, 0)
+        h, total = t - knots[i], 0.0
+        for (a, b, c, d), edge in zip(cubics[i], middle.tolist(), strict=True):
+            total += (((a * h + b) * h + c) * h + d - edge) * ((3.0 * a * h + 2.0 * b) * h + c)
+        return total
 
     if not slope(low) > 0 > slope(high):
         raise GeometryError("airfoil has no leading edge: its farthest point is a corner or an end")
     return float(brentq(slope, low, high, xtol=1e-14))
-
-
-def _lengths(spline: "PPoly", start: Array, end: Array) -> Array:
-    """Return the arc lengths between parameters, by Gauss-Legendre quadrature."""
-    half = 0.5 * (end - start)[:, None]
-    t = 0.5 * (end + start)[:, None] + half * _GAUSS_NODES
-    speed = np.linalg.norm(spline(t, 1), axis=-1)
-    lengths: Array = np.sum(half * speed * _GAUSS_WEIGHTS, axis=1)
-    return lengths

@@ -1,3 +1,4 @@
+import json
 from functools import cache
 
 import numpy as np
@@ -188,15 +189,44 @@ def test_sections_are_those_of_perturbed_blades(name):
     assert_allclose(finer.sections(x), variant.sections(SPANS, finer.u), rtol=0, atol=1e-9)
 
 
-def test_knots_are_joined_by_a_spline_that_is_level_at_its_ends():
-    model = model_of("iea15mw", parameters=(("pga", (0.3, 0.6, 0.9)),))
+@pytest.mark.parametrize("parameters", [ALL, KNOTS, (("pga", (0.4, 0.9)), "pga"), ("twist",)])
+def test_a_variant_is_the_blade_with_the_models_sections(parameters):
+    model = model_of("iea15mw", parameters=parameters)
     x = drawn(model, 6)
-    t = Coordinates([0.3, 0.6, 0.9], x.reshape(3, 4), spline=clamped)
-    variant = model.blade.perturbed(space(), t, allow_odd=True, allow_extrapolation=True)
+    variant = model.variant(x, name="best")
+    assert variant.name == "best"
     assert_allclose(model.sections(x), variant.sections(SPANS), rtol=0, atol=1e-9)
-    assert_allclose(t(np.array([0.0, 0.3])), x[[[0, 1, 2, 3]] * 2], rtol=0, atol=1e-15)
+    assert_allclose(model.quantities(x)["chord"], variant.chord(SPANS), rtol=1e-12)
+    assert "best: 117.0 m" in repr(variant)
+    json.dumps(variant.changes)
+
+
+def test_parameters_over_span_are_taken_by_a_blade_too():
+    blade, knots = blade_of("nrel5mw"), np.array([0.3, 0.9])
+    over = bg.Distribution(knots, np.array([1.1, 0.9]))
+    variant = blade.perturbed(thickness=over, chord=over, twist=bg.Distribution(knots, knots / 50))
+    at = np.array([0.3, 0.5, 1.0])
+    assert_allclose(variant.chord(at), blade.chord(at) * over(at), rtol=1e-12)
+    ratio = variant.relative_thickness(at) / blade.relative_thickness(at)
+    assert_allclose(ratio, np.ones(3), rtol=1e-9)
+    assert_allclose(variant.twist(at) - blade.twist(at), [0.006, 0.0, 0.018], atol=0.02)
+    assert "thickness over span" in repr(variant)
+    with pytest.raises(PerturbationError, match="chord_scale: got <Distribution"):
+        blade.perturbed(chord_scale=over)
+    with pytest.raises(PerturbationError, match="thickness: got 9, allowed is"):
+        blade.perturbed(thickness=bg.Distribution(knots, np.array([1.0, 9.0])))
+
+
+def test_knots_are_joined_by_a_spline_that_is_level_at_its_ends():
+    t = Coordinates([0.3, 0.6, 0.9], np.arange(6.0).reshape(3, 2), clamped)
+    assert_allclose(t(np.array([0.0, 0.3, 1.0])), [[0, 1], [0, 1], [4, 5]], rtol=0, atol=1e-15)
     slope = (t(np.array([0.3 + 1e-6])) - t(np.array([0.3]))) / 1e-6
-    assert np.abs(slope).max() < 1e-4
+    assert np.abs(slope).max() < 1e-3
+    two = (("pga", (0.3, 0.6)), ("pga", (0.2, 0.9)))
+    with pytest.raises(PerturbationError, match="pga is given at two sets of knots"):
+        model_of("iea15mw", parameters=two).variant(np.zeros(16))
+    with pytest.raises(PerturbationError, match="must be one vector of 11"):
+        model_of("iea15mw").variant(np.ones((2, 11)))
 
 
 def test_at_a_kink_the_derivative_is_that_of_one_side():

@@ -4,19 +4,27 @@ An `AffineChange` changes a definition's chord, twist, offsets and axis, within 
 paper's maps act; what it does to the relative thickness is a factor over span, a `Thickening`.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
 from bladegen.blade.window import Window
-from bladegen.definition.blade_definition import BladeDefinition, Distribution, ReferenceAxis
+from bladegen.definition.blade_definition import (
+    BladeDefinition,
+    Distribution,
+    ReferenceAxis,
+    united,
+)
 from bladegen.errors import PerturbationError
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array, ArrayLike
 
-__all__ = ["RANGES", "AffineChange", "Thickening", "faded", "in_units"]
+__all__ = ["RANGES", "WHOLE", "AffineChange", "Thickening", "faded", "in_units"]
 
-Amount = float | Array
+Amount = float | Array | Distribution
+WHOLE = ("chord_scale", "twist_scale", "prebend_scale")  # of whole distributions
 RANGES = {
     "thickness": (0.2, 5.0),
     "camber": (0.2, 1.8),
@@ -26,6 +34,10 @@ RANGES = {
     "twist_scale": (-5.0, 5.0),
     "prebend_scale": (-5.0, 5.0),
 }
+
+
+Rule = float | Callable[[Array], Array]  # a number, or a function of span
+RESOLVED = 33  # span fractions that resolve a parameter over span
 
 
 def in_units(name: str, value: float) -> str:
@@ -42,8 +54,8 @@ class AffineChange:
     """The paper's affine parameters and scalings of the planform; identity by default.
 
     The first four act within the window, through the maps of the paper; their effect on chord
-    and relative thickness is exact, and no point of the Grassmannian moves.  Each is a number,
-    or one a variant where many are made at once (`batch`).
+    and relative thickness is exact, and no point of the Grassmannian moves.  Each is a number, a
+    `Distribution` of it over span, or one a variant where many are made at once (`batch`).
 
     Parameters
     ----------
@@ -70,7 +82,13 @@ class AffineChange:
 
     def __post_init__(self) -> None:
         for name, (low, high) in RANGES.items():
-            values = np.atleast_1d(numbers(getattr(self, name), name, PerturbationError))
+            given = getattr(self, name)
+            if isinstance(given, Distribution) and name in WHOLE:
+                raise PerturbationError(
+                    f"{name}: got {given!r}, must be a number: it scales a whole distribution"
+                )
+            plain = given.values if isinstance(given, Distribution) else given
+            values = np.atleast_1d(numbers(plain, name, PerturbationError))
             outside = values[~((low <= values) & (values <= high))]
             if outside.size:
                 raise PerturbationError(
@@ -78,23 +96,45 @@ class AffineChange:
                     f"{in_units(name, low)} to {in_units(name, high)}"
                 )
 
-    def changed(self) -> dict[str, float]:
-        """Return the parameters that are not the identity."""
+    def changed(self) -> dict[str, Any]:
+        """Return the parameters that are not the identity; those over span as lists."""
+        amounts = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         return {
-            entry.name: getattr(self, entry.name)
+            entry.name: _listed(amounts[entry.name])
             for entry in fields(self)
-            if getattr(self, entry.name) != entry.default
+            if isinstance(amounts[entry.name], Distribution) or amounts[entry.name] != entry.default
         }
 
     @property
-    def widening(self) -> Amount:
-        """The factor along the chord of the three diagonal maps."""
-        return (2.0 - self.camber) * self.chord
+    def over_span(self) -> tuple[Distribution, ...]:
+        """The parameters that are distributions."""
+        return tuple(a for a in vars(self).values() if isinstance(a, Distribution))
+
+    def at(self, eta: Array) -> "AffineChange":
+        """Return the parameters at span fractions (k,)."""
+        own = {key: a(eta) for key, a in vars(self).items() if isinstance(a, Distribution)}
+        return replace(self, **own) if own else self
+
+    def plain(self, name: str) -> float | Array:
+        """Return a parameter that is no distribution."""
+        amount: float | Array = getattr(self, name)
+        return amount
 
     @property
-    def thickening(self) -> Amount:
+    def widening(self) -> float | Array:
+        """The factor along the chord of the three diagonal maps; of parameters `at` spans."""
+        return (2.0 - self.plain("camber")) * self.plain("chord")
+
+    @property
+    def thickening(self) -> float | Array:
         """The factor of the relative thickness of the three diagonal maps."""
-        return self.thickness * self.camber / self.widening
+        return self.plain("thickness") * self.plain("camber") / self.widening
+
+    def rule(self, name: str) -> "Rule":
+        """Return "widening", "thickening" or a parameter, a number or a function of span."""
+        if self.over_span:
+            return lambda eta: np.broadcast_to(getattr(self.at(eta), name), np.shape(eta))
+        return float(getattr(self, name))
 
     def applied(self, definition: BladeDefinition, window: Window) -> BladeDefinition:
         """Return a definition with chord, twist, offsets and axis changed.
@@ -104,7 +144,7 @@ class AffineChange:
         """
 
         def scaled(
-            quantity: Distribution, factor: float, whole: float = 1.0, shift: float = 0.0
+            quantity: Distribution, factor: Rule, whole: float = 1.0, shift: Rule = 0.0
         ) -> Distribution:
             if whole != 1.0:
                 quantity = replace(quantity, values=whole * quantity.values)
@@ -112,12 +152,14 @@ class AffineChange:
                 return quantity
             changed = Faded(quantity, window, factor, shift)
             grid = window.with_ramp(quantity.grid)
+            for amount in self.over_span:
+                grid = united(grid, np.linspace(amount.grid[0], amount.grid[-1], RESOLVED))
             return replace(quantity, grid=grid, values=changed(grid), spline=changed.as_spline)
 
-        widening, whole = float(self.widening), float(self.chord_scale)
-        twist = scaled(definition.twist, 1.0, float(self.twist_scale), float(self.twist))
+        widening, whole = self.rule("widening"), float(self.plain("chord_scale"))
+        twist = scaled(definition.twist, 1.0, float(self.plain("twist_scale")), self.rule("twist"))
         offset, axis = definition.section_offset_y, definition.axis
-        prebend = scaled(axis.x, 1.0, float(self.prebend_scale))
+        prebend = scaled(axis.x, 1.0, float(self.plain("prebend_scale")))
         return replace(
             definition,
             chord=scaled(definition.chord, widening, whole),
@@ -133,8 +175,8 @@ class Faded:
 
     base: Distribution
     window: Window
-    factor: float
-    shift: float
+    factor: Rule
+    shift: Rule
 
     def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
         """Return the quantity at span fractions; derivatives are not needed and not there."""
@@ -142,14 +184,14 @@ class Faded:
             raise PerturbationError("derivatives of a windowed distribution are not defined")
         at = np.asarray(eta, dtype=np.float64)
         weight = self.window(at)
-        return faded(self.base(at), weight, self.factor, self.shift)
+        return faded(self.base(at), weight, ruled(self.factor, at), ruled(self.shift, at))
 
     def as_spline(self, _grid: Array, _values: Array) -> "Faded":
         """Stand in for the spline through a grid of its values."""
         return self
 
 
-def faded(values: Array, weight: Array, factor: Amount, shift: Amount = 0.0) -> Array:
+def faded(values: Array, weight: Array, factor: float | Array, shift: float | Array = 0.0) -> Array:
     """Return values times a factor, plus a shift, both faded in by a weight."""
     result: Array = values * (1.0 + weight * (factor - 1.0)) + weight * shift
     return result
@@ -159,8 +201,19 @@ def faded(values: Array, weight: Array, factor: Amount, shift: Amount = 0.0) -> 
 class Thickening:
     """A windowed factor of the relative thickness over span."""
 
-    factor: float
+    factor: Rule
     window: Window
 
     def __call__(self, eta: Array) -> Array:
-        return faded(np.ones_like(eta), self.window(eta), self.factor)
+        return faded(np.ones_like(eta), self.window(eta), ruled(self.factor, eta))
+
+
+def ruled(rule: Rule, eta: Array) -> float | Array:
+    """Return a number, or what a function of span gives at span fractions (k,)."""
+    return rule(eta) if callable(rule) else rule
+
+
+def _listed(amount: Amount) -> Any:
+    if isinstance(amount, Distribution):
+        return {"at_eta": amount.grid.tolist(), "values": amount.values.tolist()}
+    return amount

@@ -25,7 +25,7 @@ from bladegen.blade.planform import Planform, SectionPlanes, normal_to_axis
 from bladegen.blade.shape import Shape
 from bladegen.blade.soundness import Trial, leaving
 from bladegen.blade.spans import MIRROR, reflected, span_fractions
-from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.definition.blade_definition import BladeDefinition, Distribution
 from bladegen.errors import DefinitionError, Finding, visible
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import function, whole
@@ -219,10 +219,10 @@ class Blade:
         space: ShapeSpace | None = None,
         t: ArrayLike | Coordinates = (),
         *,
-        thickness: float = 1.0,
-        camber: float = 1.0,
-        chord: float = 1.0,
-        twist: float = 0.0,
+        thickness: float | Distribution = 1.0,
+        camber: float | Distribution = 1.0,
+        chord: float | Distribution = 1.0,
+        twist: float | Distribution = 0.0,
         chord_scale: float = 1.0,
         twist_scale: float = 1.0,
         prebend_scale: float = 1.0,
@@ -240,7 +240,8 @@ class Blade:
             Modes of deformation, and coordinates along them [rad]: the same at all spans, or with
             knots over span.
         thickness, camber, chord, twist, chord_scale, twist_scale, prebend_scale : float
-            See `affine_change.AffineChange`; twist in radians.
+            See `affine_change.AffineChange`; twist in radians.  The first four may be a
+            `Distribution` over span.
         window : Window, optional
             Where shape, thickness, camber, chord and twist change; by default not on round
             roots, and fully from the first lifting airfoil on.

@@ -20,7 +20,7 @@ from bladegen.blade.deformation import (
     in_units,
 )
 from bladegen.blade.shape import Shape
-from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.definition.blade_definition import BladeDefinition, Distribution
 from bladegen.errors import PerturbationError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import amount, instance, numbers, shown
@@ -107,7 +107,7 @@ class Perturbation:
 
     def shaped(self, shape: Shape) -> Shape:
         """Return a shape deformed and thickened; its loft is the same."""
-        thickening = Thickening(float(self.change.thickening), self.window)
+        thickening = Thickening(self.change.rule("thickening"), self.window)
         if self.deformation is None and thickening.factor == 1.0:
             return shape
         return replace(
@@ -117,10 +117,14 @@ class Perturbation:
         )
 
 
-def change_of(*amounts: float) -> AffineChange:
+def change_of(*amounts: float | Distribution) -> AffineChange:
     """Return affine parameters in the order of `AffineChange`, or say which is no number."""
-    named = zip(RANGES, amounts, strict=True)
-    return AffineChange(**{key: amount(value, key, PerturbationError) for key, value in named})
+
+    def known(key: str, value: float | Distribution) -> float | Distribution:
+        over = isinstance(value, Distribution)
+        return value if over else amount(value, key, PerturbationError)
+
+    return AffineChange(**{key: known(key, a) for key, a in zip(RANGES, amounts, strict=True)})
 
 
 def together(space: Any, t: Any) -> tuple[ShapeSpace | None, Coordinates]:
@@ -142,6 +146,7 @@ def told(change: dict[str, Any]) -> str:
     asked = [in_units(key, value) for key, value in change.items() if isinstance(value, float)]
     names = [key for key, value in change.items() if isinstance(value, float)]
     words = [f"{name} {value}" for name, value in zip(names, asked, strict=True)]
+    words += [f"{name} over span" for name, value in change.items() if isinstance(value, dict)]
     rows = change.get("pga", [])
     if rows:
         first = ", ".join(f"{value:.4g}" for value in rows[0])

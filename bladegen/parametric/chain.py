@@ -9,10 +9,10 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.blade.deformation import AffineChange, faded
+from bladegen.blade.affine_change import WHOLE, AffineChange, faded
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import PerturbationError
-from bladegen.parametric.parameters import AFFINE, WHOLE, Parameters
+from bladegen.parametric.parameters import AFFINE, Parameters
 from bladegen.parametric.planform_slopes import CHORD, OFFSET, PREBEND, TWIST, PlacedSlopes
 from bladegen.support.arguments import shown
 from bladegen.support.arrays import Array

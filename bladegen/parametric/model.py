@@ -21,6 +21,7 @@ import numpy as np
 
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.blade import Blade
+from bladegen.blade.perturbation import Where
 from bladegen.blade.spans import landmarks_at, span_fractions
 from bladegen.blade.window import Window
 from bladegen.errors import PerturbationError
@@ -187,6 +188,20 @@ class ParametricBlade:
         else:
             made = Linearisation(self._outline, self._known, vectors).sections()
         return made.reshape(*lead, *made.shape[1:])
+
+    def variant(self, x: ArrayLike, *, name: str | None = None) -> Blade:
+        """Return the blade at one vector (p,), to look at, to write or to perturb further.
+
+        Its sections are the model's; nobody has tested them: see `valid`.
+        """
+        vectors, lead = self._vectors(x)
+        if lead:
+            raise PerturbationError(f"x: got {shown(x)}, must be one vector of {len(self.names)}")
+        t, change = self._known.over_span(vectors[0])
+        space = self.space if t.values.size else None
+        how: Where = {"window": self.window, "chord_line": self.chord_line}
+        how["allow_extrapolation"] = True
+        return self.blade.untested(space, t, change, name=name, **how)
 
     def jacobian(self, x: ArrayLike) -> Array:
         """Return derivatives (..., k, n, 3, p) of `sections` in the parameters."""

@@ -6,24 +6,25 @@ its ends and beyond.  Vectors x (p,) become amounts over span.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from bladegen.blade.deformation import RANGES
+from bladegen.blade.affine_change import RANGES, WHOLE, AffineChange
+from bladegen.blade.deformation import Coordinates
+from bladegen.definition.distribution import Distribution
 from bladegen.errors import PerturbationError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import numbers, shown, suggestion
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.values import brief
 
-__all__ = ["AFFINE", "USUAL", "WHOLE", "Parameters", "clamped"]
+__all__ = ["AFFINE", "USUAL", "Parameters", "clamped"]
 
 AFFINE = tuple(RANGES)
 IDENTITY = {"twist": 0.0}  # the others are factors
-WHOLE = ("chord_scale", "twist_scale", "prebend_scale")  # of distributions: no knots
 USUAL = {  # bounds where the space's data give none: what `AffineChange` calls usual
     "thickness": (0.8, 1.2),
     "camber": (0.9, 1.1),
@@ -109,6 +110,12 @@ class Parameters:
                 columns += [Column(base, base + place, weight) for base in bases]
         return tuple(columns)
 
+    @property
+    def _entries(self) -> list[tuple[str, tuple[float, ...]]]:
+        """Names and knots, none where a parameter is the same everywhere."""
+        parted = [_parted(entry) for entry in self.entries]
+        return [(name, () if knots is None else tuple(knots)) for name, knots in parted]
+
     def _spread(self, name: str, knots: Any) -> tuple[Array, list[str]]:
         """Return the weights (m, k) of a parameter's values over span, and their places' names."""
         if knots is None:
@@ -182,6 +189,38 @@ class Parameters:
         """How much each parameter counts at the spans, (p, k)."""
         return readonly([column.weight for column in self._columns])
 
+    def over_span(self, x: Array) -> tuple[Coordinates, AffineChange]:
+        """Return what `Blade.perturbed` needs for one vector (p,).
+
+        Raises
+        ------
+        PerturbationError
+            If a parameter is given at two sets of knots.
+        """
+        grids: dict[str, tuple[float, ...]] = {}
+        for name, knots in self._entries:
+            if grids.get(name) and knots:
+                raise PerturbationError(f"parameters: {name} is given at two sets of knots")
+            grids[name] = grids.get(name) or knots
+        parts: dict[str, Any] = {}
+        for name, knots in grids.items():
+            values = self._at(x, name, np.array(knots or [0.0]))
+            if name == "pga":
+                parts[name] = Coordinates(np.array(knots or [0.0]), values, clamped)
+            elif len(knots) > 1:
+                parts[name] = Distribution(np.array(knots), values[:, 0], clamped)
+            else:
+                parts[name] = float(values[0, 0])
+        t = parts.pop("pga", Coordinates.constant(()))
+        return t, AffineChange(**parts)
+
+    def _at(self, x: Array, name: str, eta: Array) -> Array:
+        """Return a quantity, or all coordinates, at span fractions (m,): (m, 1) or (m, r)."""
+        other = replace(self, eta=eta)
+        start = [j for j, one in enumerate(self.quantities) if one.partition("[")[0] == name]
+        amounts: Array = other.amounts(x[None])[0][:, start]
+        return amounts
+
     def amounts(self, x: Array) -> Array:
         """Return the amounts (b, k, r + 7) of all quantities at the spans, of vectors x (b, p)."""
         start = np.array([identity(name) for name in self.quantities])
@@ -201,6 +240,13 @@ class Column:
     base: str
     name: str
     weight: Array
+
+
+def _parted(entry: Any) -> tuple[Any, Any]:
+    """Return a parameter's name and its knots, None if it has none."""
+    if isinstance(entry, tuple | list) and len(entry) == 2:
+        return entry[0], entry[1]
+    return entry, None
 
 
 def identity(name: str) -> float:

@@ -38,12 +38,17 @@ class Placing:
         What acts within a window does so by its weights (k,).
         """
         own = self.own
-        widening, whole = column(change.widening), column(change.chord_scale)
+        widening, whole = column(change.widening), column(change.plain("chord_scale"))
         chord = whole * faded(own.chord, weight, widening)
-        twist = faded(column(change.twist_scale) * own.twist, weight, 1.0, column(change.twist))
+        twist = faded(
+            column(change.plain("twist_scale")) * own.twist,
+            weight,
+            1.0,
+            column(change.plain("twist")),
+        )
         offset_y = whole * faded(own.offset_y, weight, widening)
         offset = np.stack(np.broadcast_arrays(-offset_y, own.offset_x), axis=-1)
-        axis, frames = self._axis(np.asarray(change.prebend_scale, dtype=np.float64))
+        axis, frames = self._axis(np.asarray(change.plain("prebend_scale"), dtype=np.float64))
         axes, start = placement(chord, twist, offset, axis, frames)
         shape = count, len(self.eta)
         to_space = np.concatenate([axes, start[..., None, :]], axis=-2)

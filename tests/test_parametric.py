@@ -14,6 +14,9 @@ from bladegen.blade.planform import normal_to_z
 from bladegen.curves import polygons
 from bladegen.errors import PerturbationError
 from bladegen.parametric.parameters import AFFINE, clamped
+from bladegen.surface.grid import Spacing
+from bladegen.surface.grid import from_blade as grid_of
+from bladegen.surface.tips import flat_tip, round_tip
 from strategies import SEEDS, few
 
 BLADES, PATHS = ("iea15mw", "nrel5mw", "dtu10mw"), ("geodesic", "spline")
@@ -199,6 +202,53 @@ def test_a_variant_is_the_blade_with_the_models_sections(parameters):
     assert_allclose(model.quantities(x)["chord"], variant.chord(SPANS), rtol=1e-12)
     assert "best: 117.0 m" in repr(variant)
     json.dumps(variant.changes)
+
+
+def over(f):
+    """A function of one vector as one of many, (..., p), with points as sections (k, n, 3)."""
+
+    def many(x):
+        made = [np.asarray(f(row)) for row in x.reshape(-1, x.shape[-1])]
+        return np.reshape(made, (*x.shape[:-1], *made[0].shape))
+
+    return many
+
+
+@pytest.mark.parametrize("tip", [flat_tip, round_tip])
+def test_vertices_of_a_mesh_have_exact_derivatives_and_fixed_triangles(tip):
+    model = bg.ParametricBlade(
+        blade_of("dtu10mw"), space(), ("pga", "chord", "prebend_scale"), SPANS
+    )
+    x = drawn(model, 8)
+    made = model.mesh(x, tip=tip)
+    baseline = model.mesh(model.baseline, tip=tip)
+    assert_array_equal(made.faces, baseline.faces)
+    assert_allclose(
+        model.quantities(x)["volume"], made.volume, rtol=1e-3 if tip is flat_tip else 1e-2
+    )
+    exact = model.mesh_jacobian(x, tip=tip)
+    agree(exact[None], differences(over(lambda row: model.mesh(row, tip=tip).vertices[None]), x))
+    with pytest.raises(PerturbationError, match="a mesh needs the tip, 1, as its last"):
+        model.at([0.2, 0.5]).mesh(x)
+    with pytest.raises(PerturbationError, match="derivatives are known of flat_tip and round_tip"):
+        model.mesh(x, tip=lambda *sides: None)
+
+
+@pytest.mark.parametrize("tip", [flat_tip, round_tip])
+@pytest.mark.parametrize("edge", [None, Sharp()])
+def test_points_of_a_grid_have_exact_derivatives(tip, edge):
+    blade = blade_of("dtu10mw") if edge is None else blade_of("dtu10mw").with_trailing_edge(edge)
+    model = bg.ParametricBlade(blade, space(), ("pga", "thickness", "chord"))
+    spacing = Spacing(around=41, along=9, edge=4)
+    own = grid_of(blade, spacing, tip)
+    for block, points in zip(own.blocks, model.grid(model.baseline, spacing, tip=tip), strict=True):
+        assert_allclose(points, block.points, rtol=0, atol=1e-9)
+    x = drawn(model, 9)
+    exact = model.grid_jacobian(x, spacing, tip=tip)
+    for i, part in enumerate(exact):
+        assert part.shape == (*own.blocks[i].eta.shape, 3, 6)
+        whole = over(lambda row, i=i: model.grid(row, spacing, tip=tip)[i][None])
+        agree(part[None], differences(whole, x))
 
 
 def test_parameters_over_span_are_taken_by_a_blade_too():

@@ -13,7 +13,7 @@ They exist but at few places, where one side's derivative is given:
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -25,6 +25,7 @@ from bladegen.blade.perturbation import Where
 from bladegen.blade.spans import landmarks_at, span_fractions
 from bladegen.blade.window import Window
 from bladegen.errors import PerturbationError
+from bladegen.parametric import outputs
 from bladegen.parametric.chain import change_of
 from bladegen.parametric.linearisation import Linearisation
 from bladegen.parametric.outline import Outline
@@ -194,10 +195,7 @@ class ParametricBlade:
 
         Its sections are the model's; nobody has tested them: see `valid`.
         """
-        vectors, lead = self._vectors(x)
-        if lead:
-            raise PerturbationError(f"x: got {shown(x)}, must be one vector of {len(self.names)}")
-        t, change = self._known.over_span(vectors[0])
+        t, change = self._known.over_span(self.vector(x))
         space = self.space if t.values.size else None
         how: Where = {"window": self.window, "chord_line": self.chord_line}
         how["allow_extrapolation"] = True
@@ -225,6 +223,21 @@ class ParametricBlade:
             raise PerturbationError(f"g: got {shown(gradient)}, must be of shape {shape}")
         made = linear.vjp(gradient.reshape(-1, *shape[-3:]))
         return made.reshape(*lead, -1)
+
+    def at(self, eta: ArrayLike, u: Array | None = None) -> "ParametricBlade":
+        """Return the model of sections at other span fractions and landmark parameters."""
+        return replace(self, eta=span_fractions(eta), u=u)
+
+    mesh, mesh_jacobian = outputs.mesh, outputs.mesh_jacobian
+    grid, grid_jacobian = outputs.grid, outputs.grid_jacobian
+
+    def vector(self, x: ArrayLike) -> Array:
+        """Return one vector (p,), or say that it is none."""
+        vectors, lead = self._vectors(x)
+        if lead:
+            raise PerturbationError(f"x: got {shown(x)}, must be one vector of {len(self.names)}")
+        vector: Array = vectors[0]
+        return vector
 
     def quantities(self, x: ArrayLike) -> Quantities:
         """Return quantities by name at vectors x (..., p), and their derivatives.

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Indices
 from bladegen.surface.tips import Tip, arcs, on_arcs
 
-__all__ = ["Cap", "cap", "divisions"]
+__all__ = ["Cap", "Layout", "cap", "divisions", "layout"]
 
 DEPTH = 0.3  # a flat core ends where the nose is so deep for its half width: 45 degrees turned
 CLOSEST = 1.6  # but no nearer than so many times the distance at which the rim leaves the sides
@@ -47,6 +47,63 @@ def divisions(edge: int) -> tuple[int, int]:
     return layers, edge - 2 * layers
 
 
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where a cap's points lie on a tip: distances e from the nose and places w, `Cap`'s shapes.
+
+    `corner` is the point of the outline that the core's corner faces, `layers` the cells across
+    the rim; a `flat` tip's rim runs along straight lines.
+    """
+
+    rim_e: Array
+    rim_w: Array
+    core_e: Array
+    core_w: Array
+    corner: int
+    layers: int
+    flat: bool
+
+    @property
+    def places(self) -> tuple[Array, Indices, Array]:
+        """The landmark parameters (m,) of the points, symmetric, and for each its place and w.
+
+        The place is that in the first half of the parameters.
+        """
+        flat = np.concatenate([[0.0, 0.5], self.rim_e.reshape(-1), self.core_e.reshape(-1)])
+        e, index = np.unique(flat, return_inverse=True)
+        side = 0.5 - e[::-1]
+        u = np.concatenate([side, 1.0 - side[-2::-1]])
+        w = np.concatenate([self.rim_w.reshape(-1), self.core_w.reshape(-1)])
+        return u, len(e) - 1 - index[2:], w
+
+    def points(self, section: Array, poles: Array | None) -> tuple[Array, Array]:
+        """Return points of rim and core, of the section at `places` or of its arcs' poles.
+
+        Coordinates stand along the last axis, of any length: those of points, or derivatives.
+        """
+        _, index, w = self.places
+        if poles is None:
+            points = (1.0 - w)[:, None] * section[index] + w[:, None] * section[-1 - index]
+        else:
+            points = on_arcs(poles[index], w)
+        rim, core = np.split(points, [self.rim_e.size])
+        return rim.reshape(*self.rim_e.shape, -1), core.reshape(*self.core_e.shape, -1)
+
+    def cap(self, outline: Array, rim: Array, core: Array, *, sharp: bool) -> Cap:
+        """Return the cap of such points, joined to an outline (n, ...) and to itself."""
+        if self.flat:
+            t = np.linspace(0.0, 1.0, self.layers + 1)[:, None, None]
+            rim = outline + t * (rim[-1] - outline)
+        n, corner = len(outline), self.corner
+        rim[0] = outline
+        core[0], core[-1] = rim[-1, : corner + 1], rim[-1, : n - corner - 2 : -1]
+        core[:, -1] = rim[-1, corner : n - corner]
+        if sharp:
+            rim[:, [0, -1]] = core[:, :1] = outline[0]  # one point, bit for bit
+        u = _landmark(self.rim_e, self.rim_w), _landmark(self.core_e, self.core_w)
+        return Cap(rim, core, *u)
+
+
 def cap(blade: Blade, tip: Tip, outline: Array, u: Array, edge: int) -> Cap:
     """Cover a blade's tip.
 
@@ -63,11 +120,19 @@ def cap(blade: Blade, tip: Tip, outline: Array, u: Array, edge: int) -> Cap:
     edge : int
         Cells across the trailing edge, even, at least 4.
     """
+    placed = layout(outline, u, edge, flat=arcs(blade, tip) is None)
+    own, _, _ = placed.places
+    poles = None if placed.flat else arcs(blade, tip, own)
+    points = placed.points(blade.sections(1.0, own) if placed.flat else outline, poles)
+    return placed.cap(outline, *points, sharp=bool(np.array_equal(outline[0], outline[-1])))
+
+
+def layout(outline: Array, u: Array, edge: int, *, flat: bool) -> Layout:
+    """Lay out the cap of a tip that is flat or round: see `cap`."""
     layers, across = divisions(edge)
     share = layers / edge
     n, middle = len(u), len(u) // 2
     corner = middle - across // 2  # the core's nose faces so many cells of the outline
-    flat = arcs(blade, tip) is None
 
     e = np.abs(u - 0.5)
     nose = min(_core_ends(outline, e, corner) if flat else ROUND_CLOSEST * e[corner], FARTHEST)
@@ -90,15 +155,7 @@ def cap(blade: Blade, tip: Tip, outline: Array, u: Array, edge: int) -> Cap:
 
     core_w = _across(width[: corner + 1], place[corner : n - corner, None])
     core_e = np.broadcast_to(within[: corner + 1], core_w.shape)
-    rim, core = _points(blade, tip, (rim_e, core_e), (rim_w, core_w))
-    if flat:
-        rim = outline + t[..., None] * (rim[-1] - outline)
-    rim[0] = outline
-    core[0], core[-1] = rim[-1, : corner + 1], rim[-1, : n - corner - 2 : -1]
-    core[:, -1] = rim[-1, corner : n - corner]
-    if np.array_equal(outline[0], outline[-1]):
-        rim[:, [0, -1]] = core[:, :1] = outline[0]  # a sharp edge is one point, bit for bit
-    return Cap(rim, core, _landmark(rim_e, rim_w), _landmark(core_e, core_w))
+    return Layout(rim_e, rim_w, core_e, core_w, corner, layers, flat)
 
 
 def _core_ends(outline: Array, e: Array, corner: int) -> float:
@@ -119,24 +176,3 @@ def _across(width: Array, place: Array) -> Array:
 
 def _landmark(e: Array, w: Array) -> Array:
     return np.where(w <= 0.5, 0.5 - e, 0.5 + e)
-
-
-def _points(
-    blade: Blade, tip: Tip, distances: tuple[Array, ...], across: tuple[Array, ...]
-) -> list[Array]:
-    """Return points (..., 3) of the tip's surface at e and w, for several grids of them."""
-    flat = np.concatenate([[0.0, 0.5], *(e.reshape(-1) for e in distances)])
-    e, index = np.unique(flat, return_inverse=True)
-    index = len(e) - 1 - index[2:]
-    side = 0.5 - e[::-1]
-    u = np.concatenate([side, 1.0 - side[-2::-1]])
-    w = np.concatenate([part.reshape(-1) for part in across])
-    poles = arcs(blade, tip, u)
-    if poles is None:
-        section = blade.sections(1.0, u)
-        points = (1.0 - w)[:, None] * section[index] + w[:, None] * section[-1 - index]
-    else:
-        points = on_arcs(poles[index], w)
-    cuts = np.cumsum([part.size for part in across])[:-1]
-    grids = zip(np.split(points, cuts), across, strict=True)
-    return [part.reshape(*shape.shape, 3) for part, shape in grids]

@@ -12,10 +12,9 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import GeometryError, visible
-from bladegen.support.arrays import Array, readonly
-from bladegen.support.values import brief
-from bladegen.surface.caps import Cap, cap, divisions
-from bladegen.surface.net import CLOSED_EDGE
+from bladegen.support.arrays import Array
+from bladegen.surface.blocks import Block, blocks_of, is_blunt
+from bladegen.surface.caps import cap, divisions
 from bladegen.surface.stretching import MINIMUM_CELLS, two_sided
 from bladegen.surface.tips import Tip, flat_tip
 
@@ -87,35 +86,6 @@ class Spacing:
         return spans
 
 
-@dataclass(frozen=True, eq=False)
-class Block:
-    """A block of a grid.
-
-    Parameters
-    ----------
-    name : str
-        As the solid's face; the tip has two blocks.
-    family : str
-        The solid's face that it belongs to.
-    points : (ni, nj, 3) array
-        Points [m]; on the sides i runs from root to tip, j around.
-    eta, u : (ni, nj) arrays
-        Span fraction and landmark parameter; between the sides those of the nearer one.
-    """
-
-    name: str
-    family: str
-    points: Array
-    eta: Array
-    u: Array
-
-    __repr__ = brief
-
-    def __post_init__(self) -> None:
-        for name in ("points", "eta", "u"):
-            object.__setattr__(self, name, readonly(getattr(self, name)))
-
-
 Corner = tuple[int, int]
 
 
@@ -184,46 +154,16 @@ def from_blade(blade: Blade, spacing: Spacing | None = None, tip: Tip = flat_tip
     spacing = spacing or Spacing()
     u, eta = spacing.parameters(), spacing.spans(blade)
     sections = blade.sections(eta, u)
-    gap = np.linalg.norm(sections[:, 0] - sections[:, -1], axis=-1)
-    blunt = bool(gap.max() > CLOSED_EDGE)
-    if blunt and gap.min() <= CLOSED_EDGE:
-        raise GeometryError(
-            f"{blade.name}: the trailing edge is sharp at some spans and blunt at others; give "
-            "it a minimum thickness or make it sharp everywhere"
-        )
+    blunt = is_blunt(blade.name, sections)
     if not blunt:
         sections[:, -1] = sections[:, 0]  # so that both sides' points there are the same bits
-    middle = len(u) // 2
-    span = np.broadcast_to(eta[:, None], sections.shape[:2])
-    place = np.broadcast_to(u, sections.shape[:2])
-    halves = slice(None, middle + 1), slice(middle, None)
-    blocks = [
-        Block(name, name, sections[:, half], span[:, half], place[:, half])
-        for name, half in zip(("suction side", "pressure side"), halves, strict=True)
-    ]
-    over = cap(blade, tip, sections[-1], u, spacing.edge)
-    if blunt:
-        blocks.append(_edge_block(sections, eta, over))
-    for name, points, place in (("rim", over.rim, over.rim_u), ("core", over.core, over.core_u)):
-        blocks.append(Block(f"tip {name}", "tip", points, np.ones(place.shape), place))
+    blocks = blocks_of(
+        sections, cap(blade, tip, sections[-1], u, spacing.edge), eta, u, blunt=blunt
+    )
     joints = _interfaces(blocks, spacing)
     for i, name in enumerate(blade.sides):
         blocks[i] = replace(blocks[i], name=name, family=name)
     return Grid(blade.name, tuple(blocks), joints, spacing)
-
-
-def _edge_block(sections: Array, eta: Array, over: Cap) -> Block:
-    """Return the trailing edge, from pressure to suction side; its last row is the tip's."""
-    layers, across = len(over.rim) - 1, len(over.core) - 1
-    w = np.linspace(0.0, 1.0, 2 * layers + across + 1)
-    points = (1.0 - w[:, None]) * sections[:, -1:] + w[:, None] * sections[:, :1]
-    points[:, 0], points[:, -1] = sections[:, -1], sections[:, 0]
-    points[-1, : layers + 1] = over.rim[:, -1]
-    points[-1, layers : layers + across + 1] = over.core[::-1, 0]
-    points[-1, layers + across :] = over.rim[::-1, 0]
-    shape = points.shape[:2]
-    span = np.broadcast_to(eta[:, None], shape)
-    return Block("trailing edge", "trailing edge", points, span, np.broadcast_to(w < 0.5, shape))
 
 
 def _interfaces(blocks: list[Block], spacing: Spacing) -> tuple[Interface, ...]:

@@ -15,7 +15,7 @@ from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, readonly
 from bladegen.surface.tips import Tip, arcs, flat_tip, on_arcs
 
-__all__ = ["TriangleMesh", "from_blade", "surface"]
+__all__ = ["ACROSS", "TriangleMesh", "from_blade", "surface", "topology"]
 
 ACROSS = 16  # quads across a rounded tip
 SECTIONS = 300  # 300 x 401 landmarks make 240,000 triangles
@@ -110,6 +110,16 @@ def surface(
             f"mesh: got {k} sections of {n} landmarks, allowed are at least 2 sections of an "
             "odd number of at least 5 landmarks"
         )
+    points, used, faces = topology(sections, across)
+    return TriangleMesh(points[used], faces, None if places is None else places[used])
+
+
+def topology(sections: Array, across: Array | None = None) -> tuple[Array, Indices, Indices]:
+    """Return the points (m, 3) of a grid of sections, which are vertices, and their triangles.
+
+    Arguments are those of `surface`.
+    """
+    k, n, _ = sections.shape
     points = sections.reshape(-1, 3)
     grid = np.arange(k * n).reshape(k, n)
     around = np.concatenate([grid, grid[:, :1]], axis=1)  # the last column closes the edge
@@ -128,8 +138,7 @@ def surface(
             *(() if across is None else (_cap(points, rows[0])[:, ::-1],)),
         ]
     )
-    used, faces = _welded(points, faces, grid, rows)
-    return TriangleMesh(points[used], faces, None if places is None else places[used])
+    return points, *_welded(points, faces, grid, rows)
 
 
 def _quads(points: Array, a: Indices, b: Indices, c: Indices, d: Indices) -> Indices:

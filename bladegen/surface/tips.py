@@ -10,11 +10,22 @@ from collections.abc import Callable
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, readonly
 
-__all__ = ["TIPS", "Tip", "arcs", "flat_tip", "on_arcs", "round_tip"]
+__all__ = [
+    "SPANS",
+    "TIPS",
+    "Tip",
+    "arcs",
+    "ends",
+    "flat_tip",
+    "on_arcs",
+    "round_tip",
+    "round_tip_slopes",
+]
 
 STEP = 1e-4  # of the span: sides' directions by differences are then good to 1e-6 and better
+SPANS = readonly([1.0, 1.0 - STEP, 1.0 - 2.0 * STEP])
 
 Tip = Callable[[Array, Array, Array, Array], Array | None]
 
@@ -48,6 +59,35 @@ def round_tip(suction: Array, pressure: Array, along: Array, opposite: Array) ->
     return np.stack([suction, lifted, opposed, pressure], axis=-2)
 
 
+def round_tip_slopes(given: tuple[Array, ...], changes: tuple[Array, ...]) -> Array:
+    """Return the derivatives (m, 4, 3, p) of `round_tip` in p directions.
+
+    Parameters
+    ----------
+    given : four (m, 3) arrays
+        Its arguments.
+    changes : four (m, 3, p) arrays
+        Their derivatives.
+    """
+    suction, pressure, along, opposite = given
+    by_suction, by_pressure, by_along, by_opposite = changes
+    gap, width = suction - pressure, np.linalg.norm(suction - pressure, axis=-1)[:, None, None]
+    growth = np.sum(gap[..., None] * (by_suction - by_pressure), axis=1, keepdims=True)
+    reach = 2.0 / 3.0 * width
+    by_reach = np.divide(2.0 / 3.0 * growth, width, out=np.zeros_like(growth), where=width > 0)
+
+    def raised(start: Array, way: Array, change: Array) -> Array:
+        length = np.linalg.norm(way, axis=-1)[:, None, None]
+        unit, change = way[..., None] / length, change / length
+        change = change - unit * np.sum(unit * change, axis=1, keepdims=True)
+        result: Array = start + by_reach * unit + reach * change
+        return result
+
+    lifted = raised(by_suction, along, by_along)
+    opposed = raised(by_pressure, opposite, by_opposite)
+    return np.stack([by_suction, lifted, opposed, by_pressure], axis=1)
+
+
 TIPS: dict[str, Tip] = {"flat": flat_tip, "round": round_tip}  # as the command line calls them
 
 
@@ -68,11 +108,16 @@ def arcs(blade: Blade, tip: Tip, u: Array | None = None) -> Array | None:
     (n // 2 + 1, 4, 3) array or None
         Poles [m]; None if the tip is flat.
     """
-    last, before, further = blade.sections(np.array([1.0, 1.0 - STEP, 1.0 - 2.0 * STEP]), u)
+    return tip(*ends(blade.sections(SPANS, u)))
+
+
+def ends(sections: Array) -> tuple[Array, Array, Array, Array]:
+    """Return what a tip maps, (m, ...) each, of sections (3, n, ...) at `SPANS`, or derivatives."""
+    last, before, further = sections
     along = 1.5 * last - 2.0 * before + 0.5 * further
     middle = len(last) // 2
     suction, pressure = slice(None, middle + 1), slice(None, middle - 1, -1)
-    return tip(last[suction], last[pressure], along[suction], along[pressure])
+    return last[suction], last[pressure], along[suction], along[pressure]
 
 
 def on_arcs(poles: Array, w: Array) -> Array:

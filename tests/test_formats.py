@@ -149,12 +149,13 @@ def test_swept_blades_with_offsets_and_no_thickness_come_back(tmp_path, format_)
     path = tmp_path / FILES[format_]
     said = [str(finding) for finding in bg.write(swept, path)]
     again = bg.read(path)
-    # docs/formats.md: 2.0 mm where a format has no place for offsets normal to the chord
-    assert surfaces_apart(swept, again) < (0.5 if format_ in ("csv", "xlsx") else 2.05)
+    # docs/formats.md: 2.01 mm where a format has no place for offsets normal to the chord
+    promised = {"openfast": 2.01, "hawc2": 2.015, "xlsx": 0.5, "csv": 1e-6}
+    assert surfaces_apart(swept, again) < promised[format_]
     if format_ in ("openfast", "hawc2"):
         assert any("section_offset_x" in line for line in said)
         assert not any("rotor" in line for line in said)
-        assert_allclose(again.axis.y(grid), swept.axis.y(grid), rtol=0, atol=0.02)
+        assert_allclose(again.axis.y(grid), swept.axis.y(grid), rtol=0, atol=0.006)
 
 
 @pytest.mark.parametrize("format_", ["openfast", "hawc2"])

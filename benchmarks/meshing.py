@@ -25,7 +25,8 @@ from bladegen.exports import exporters
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
 from bladegen.measures import properties
-from bladegen.surface import grid, mesh_files
+from bladegen.surface import mesh_files
+from bladegen.surface.grids import grid
 
 RUNS = 3
 STATIONS = (50, 100, 300, 900)

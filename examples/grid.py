@@ -12,7 +12,7 @@ from PIL import Image
 
 import bladegen as bg
 from bladegen.plots import style
-from bladegen.surface import grid
+from bladegen.surface.grids import grid
 from bladegen.surface.tips import round_tip
 from bladegen.views import preview
 

@@ -14,7 +14,7 @@ from bladegen.exports.options import Kind, Options
 from bladegen.exports.products import Products
 from bladegen.exports.registry import FORMATS, Format
 from bladegen.surface import mesh, mesh_files
-from bladegen.surface.grid import Spacing
+from bladegen.surface.grids.grid import Spacing
 from bladegen.surface.tips import flat_tip, round_tip
 
 MESHES = [".stl", ".ply", ".glb", ".obj", ".3mf", ".vtp"]

@@ -12,9 +12,9 @@ from bladegen.errors import GeometryError
 from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.surface import mesh
-from bladegen.surface.grid import Spacing, from_blade
-from bladegen.surface.grid_files import welded
-from bladegen.surface.grid_quality import areas, corner_angles, grid_figures, skewness
+from bladegen.surface.grids.grid import Spacing, from_blade
+from bladegen.surface.grids.grid_files import welded
+from bladegen.surface.grids.grid_quality import areas, corner_angles, grid_figures, skewness
 from bladegen.surface.tips import arcs, flat_tip, on_arcs, round_tip
 from strategies import definitions, few
 

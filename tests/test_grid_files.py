@@ -13,8 +13,8 @@ from scipy.io import FortranFile
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import Sharp
 from bladegen.formats.reading import read
-from bladegen.surface import grid_files
-from bladegen.surface.grid import Spacing, from_blade
+from bladegen.surface.grids import grid_files
+from bladegen.surface.grids.grid import Spacing, from_blade
 from bladegen.surface.tips import round_tip
 
 SPACING = Spacing(around=65, along=33, edge=6, leading_edge=4e-3, tip=1e-3, root=0.02)

@@ -1,8 +1,14 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from bladegen.surface.grid import Block, Grid, Interface
-from bladegen.surface.grid_quality import areas, corner_angles, grid_figures, skewness, stretching
+from bladegen.surface.grids.grid import Block, Grid, Interface
+from bladegen.surface.grids.grid_quality import (
+    areas,
+    corner_angles,
+    grid_figures,
+    skewness,
+    stretching,
+)
 
 
 def cells(x, y, shear=0.0):

@@ -24,7 +24,7 @@ from bladegen.exports.products import Products
 from bladegen.exports.provenance import Provenance, made_from, word
 from bladegen.exports.registry import FORMATS
 from bladegen.measures import checks
-from bladegen.surface.grid import Spacing
+from bladegen.surface.grids.grid import Spacing
 from bladegen.surface.tips import round_tip
 
 SMALL = Spacing(around=33, along=9, edge=4, leading_edge=0.02, trailing_edge=0.02, root=0.1)

@@ -22,8 +22,8 @@ from bladegen.families.order import Order
 from bladegen.measures import checks, properties
 from bladegen.measures.spanwise import spanwise
 from bladegen.surface import fitting, mesh, mesh_files
-from bladegen.surface.grid import Spacing
-from bladegen.surface.grid import from_blade as grid_of
+from bladegen.surface.grids.grid import Spacing
+from bladegen.surface.grids.grid import from_blade as grid_of
 from bladegen.surface.tips import flat_tip, round_tip
 from bladegen.views import preview
 from bladegen.views.rendering.blade_scene import scene_of

@@ -14,8 +14,8 @@ from bladegen.blade.planform import normal_to_z
 from bladegen.curves import polygons
 from bladegen.errors import PerturbationError
 from bladegen.parametric.parameters import AFFINE, clamped
-from bladegen.surface.grid import Spacing
-from bladegen.surface.grid import from_blade as grid_of
+from bladegen.surface.grids.grid import Spacing
+from bladegen.surface.grids.grid import from_blade as grid_of
 from bladegen.surface.tips import flat_tip, round_tip
 from strategies import SEEDS, few
 

@@ -24,7 +24,7 @@ from bladegen.measures.inflections import inflections
 from bladegen.measures.smoothness import creases, edge_bulges, edge_widths
 from bladegen.plots import combs
 from bladegen.shapes import affine, cst
-from bladegen.surface import grid, grid_quality
+from bladegen.surface.grids import grid, grid_quality
 from bladegen.surface.tips import flat_tip, round_tip
 
 PAGES = Path(__file__).parents[1] / "docs"

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from bladegen.errors import GeometryError
-from bladegen.surface.stretching import two_sided, vinokur
+from bladegen.surface.grids.stretching import two_sided, vinokur
 
 CELLS = st.integers(4, 300)
 SHARES = st.floats(1e-3, 1.5)  # of the mean cell

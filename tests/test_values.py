@@ -9,7 +9,8 @@ import bladegen as bg
 from bladegen.exports.options import Options
 from bladegen.exports.provenance import fingerprint
 from bladegen.support.values import equal, hashed
-from bladegen.surface import grid, mesh
+from bladegen.surface import mesh
+from bladegen.surface.grids import grid
 
 SPACE = bg.ShapeSpace.bundled()
 DEFINITION = bg.read("iea15mw")

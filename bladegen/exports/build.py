@@ -32,7 +32,7 @@ from bladegen.plots import combs
 from bladegen.support.files import alone, folder, replacing, safe_stem
 from bladegen.surface import mesh_files
 from bladegen.surface.deviation import Deviation
-from bladegen.surface.grid_quality import grid_figures
+from bladegen.surface.grids.grid_quality import grid_figures
 from bladegen.version import __version__
 
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]

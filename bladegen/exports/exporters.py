@@ -15,7 +15,7 @@ from bladegen.exports.registry import format_of, suffix_of
 from bladegen.support.arguments import instance, path_of
 from bladegen.support.arrays import Array
 from bladegen.support.files import replacing
-from bladegen.surface import grid
+from bladegen.surface.grids import grid
 from bladegen.surface.tips import Tip, flat_tip
 
 __all__ = ["aside", "export", "require_size", "write"]
@@ -67,7 +67,7 @@ def export(
         Solids: the most bytes that a file may take.
     spans : (k,) array, optional
         Solids: span fractions of sections to begin with, such as those of a blade that is alike.
-    spacing : bladegen.surface.grid.Spacing, optional
+    spacing : bladegen.surface.grids.grid.Spacing, optional
         Grids: how many points, and cell sizes as fractions of a side and of the axis.
     polars : str, optional
         Definitions: where polars are from, as for `bladegen.write`.

@@ -11,7 +11,8 @@ from bladegen.exports.provenance import word
 from bladegen.support.arguments import amount, function, instance, one_of, suggestion, whole
 from bladegen.support.arrays import Array
 from bladegen.support.values import brief
-from bladegen.surface import grid, mesh
+from bladegen.surface import mesh
+from bladegen.surface.grids import grid
 from bladegen.surface.tips import Tip, flat_tip
 
 __all__ = ["UNITS", "Kind", "Options"]
@@ -93,7 +94,7 @@ class Options:
         if self.sections is not None:
             whole(self.sections, "sections", ExportError)
         function(self.tip, "tip", "bladegen.surface.tips.flat_tip or round_tip", ExportError)
-        must = "a bladegen.surface.grid.Spacing"
+        must = "a bladegen.surface.grids.grid.Spacing"
         instance(self.spacing, grid.Spacing, "spacing", must, ExportError)
 
     __repr__ = brief

@@ -11,7 +11,8 @@ from bladegen.errors import Finding
 from bladegen.exports import marks
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.provenance import Provenance, made_from
-from bladegen.surface import grid, mesh
+from bladegen.surface import mesh
+from bladegen.surface.grids import grid
 
 __all__ = ["Products"]
 

@@ -19,7 +19,8 @@ from bladegen.exports.products import Products
 from bladegen.formats import writing
 from bladegen.support.arguments import suggestion
 from bladegen.support.plugins import Offered, guarded, offered
-from bladegen.surface import grid_files, mesh_files
+from bladegen.surface import mesh_files
+from bladegen.surface.grids import grid_files
 from bladegen.views import preview
 
 __all__ = ["FORMATS", "Format", "format_of", "formats", "plugged", "plugins", "suffix_of"]

@@ -8,7 +8,7 @@ from typing import Any
 
 from bladegen.parametric.surfaces import GridModel, MeshModel
 from bladegen.support.arrays import Array, ArrayLike
-from bladegen.surface.grid import Spacing
+from bladegen.surface.grids.grid import Spacing
 from bladegen.surface.mesh import TriangleMesh
 from bladegen.surface.tips import Tip, flat_tip
 
@@ -35,7 +35,7 @@ def mesh_jacobian(model: Any, x: ArrayLike, *, tip: Tip = flat_tip) -> Array:
 def grid(
     model: Any, x: ArrayLike, spacing: Spacing | None = None, *, tip: Tip = flat_tip
 ) -> tuple[Array, ...]:
-    """Return the points (ni, nj, 3) of the blocks of `surface.grid.from_blade`.
+    """Return the points (ni, nj, 3) of the blocks of `surface.grids.grid.from_blade`.
 
     At one vector (p,); where points lie on the surface, by span and landmark parameter, is the
     baseline's.

@@ -16,9 +16,10 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import PerturbationError
 from bladegen.support.arguments import shown
 from bladegen.support.arrays import Array, Indices
-from bladegen.surface import blocks, mesh
-from bladegen.surface.caps import Layout, layout
-from bladegen.surface.grid import Spacing
+from bladegen.surface import mesh
+from bladegen.surface.grids import blocks
+from bladegen.surface.grids.caps import Layout, layout
+from bladegen.surface.grids.grid import Spacing
 from bladegen.surface.tips import SPANS, Tip, ends, flat_tip, on_arcs, round_tip, round_tip_slopes
 
 __all__ = ["GridModel", "MeshModel"]

@@ -254,7 +254,7 @@ class Producing:
         """Return how products are made."""
         from bladegen.cli.options.parsing import metres
         from bladegen.exports.options import Options
-        from bladegen.surface.grid import Spacing
+        from bladegen.surface.grids.grid import Spacing
         from bladegen.surface.tips import TIPS
 
         if self.light and self.tolerance is not None:

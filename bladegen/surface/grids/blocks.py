@@ -11,7 +11,7 @@ import numpy as np
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.values import brief
-from bladegen.surface.caps import Cap
+from bladegen.surface.grids.caps import Cap
 from bladegen.surface.net import CLOSED_EDGE
 
 __all__ = ["Block", "blocks_of", "is_blunt"]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.support.arrays import Array
-from bladegen.surface.grid import Block, Grid
+from bladegen.surface.grids.grid import Block, Grid
 
 __all__ = ["areas", "corner_angles", "grid_figures", "skewness", "stretching"]
 

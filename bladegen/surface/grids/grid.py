@@ -13,9 +13,9 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.errors import GeometryError, visible
 from bladegen.support.arrays import Array
-from bladegen.surface.blocks import Block, blocks_of, is_blunt
-from bladegen.surface.caps import cap, divisions
-from bladegen.surface.stretching import MINIMUM_CELLS, two_sided
+from bladegen.surface.grids.blocks import Block, blocks_of, is_blunt
+from bladegen.surface.grids.caps import cap, divisions
+from bladegen.surface.grids.stretching import MINIMUM_CELLS, two_sided
 from bladegen.surface.tips import Tip, flat_tip
 
 __all__ = ["Block", "Grid", "Interface", "Spacing", "from_blade"]

@@ -135,7 +135,7 @@ def _climbed(
             bending = (rate * rate + here * (6.0 * d * s + 2.0 * c)).sum(axis=0)
             step = (here * rate).sum(axis=0) / bending
             s = s - step
-            if not np.abs(step).max() > SETTLED:
+            if not np.abs(step).max(initial=0.0) > SETTLED:
                 break
         settled = (np.abs(step) <= SETTLED) & (bending < 0.0) & (s >= 0.0) & (s <= 1.0)
         settled &= (rise >= 0.0) & (fall <= 0.0)

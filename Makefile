@@ -38,7 +38,7 @@ mutants: ## mutate the mathematics and run its tests on each mutant
 lock: ## pin what is used and what it is developed with, in locks/
 	@./scripts/setup.sh dev
 	.venv/bin/uv pip compile $(LOCK) -o locks/run.txt pyproject.toml
-	.venv/bin/uv pip compile $(LOCK) --all-extras -o locks/dev.txt pyproject.toml
+	.venv/bin/uv pip compile $(LOCK) --extra dev -o locks/dev.txt pyproject.toml
 	grep -E '^($(CORE))==' locks/run.txt | sed 's/^cadquery-ocp==/cadquery-ocp-novtk==/' > locks/core.txt
 
 licences: ## list the licences of all that bladegen needs to run, into docs/licences.md

@@ -32,7 +32,14 @@ __all__ = [
     "visible",
 ]
 
-PACKAGES = {"OCP": "cadquery-ocp", "vtkmodules": "pyvista", "PIL": "pillow", "yaml": "pyyaml"}
+PACKAGES = {
+    "OCP": "cadquery-ocp",
+    "vtkmodules": "pyvista",
+    "PIL": "pillow",
+    "yaml": "pyyaml",
+    "neuralfoil": "'bladegen[aero]'",
+    **{extra: f"'bladegen[{extra}]'" for extra in ("openmdao", "torch", "jax")},
+}
 
 # control characters (C0, C1), those without a form of their own that turn the direction of what
 # follows or join it, halves of pairs, and marks of lines and paragraphs

@@ -10,15 +10,17 @@ import bladegen
 
 PACKAGE = Path(bladegen.__file__).parent
 ROOMS = """errors version support curves airfoils shapes definition blade variants formats surface
-cad measures parametric plots views exports families studio cli""".split()  # noqa: SIM905
+cad measures parametric adapters plots views exports families studio cli""".split()  # noqa: SIM905
 HEAVY = {
-    *"""OCP PIL cadquery distributed fastapi h5py imageio_ffmpeg matplotlib neuralfoil nicegui numba
-    openpyxl pyarrow pyvista ruamel scipy trimesh uvicorn vtkmodules zarr""".split()  # noqa: SIM905
+    *"""OCP PIL aerosandbox cadquery casadi distributed fastapi h5py imageio_ffmpeg jax matplotlib
+    neuralfoil nicegui numba openmdao openpyxl pyarrow pyvista ruamel scipy torch trimesh uvicorn
+    vtkmodules zarr""".split()  # noqa: SIM905
 }
 COMPILED = {
     *"""compiled workers plane_maps characteristics section_measures sizes kernels edge_slopes
     section_slopes coefficient_kernels""".split()  # noqa: SIM905
 }
+ADAPTERS = {"openmdao", "torch", "jax"}  # imported by who has the library, and by nothing of ours
 TREES = {p: ast.parse(p.read_text(encoding="utf-8")) for p in sorted(PACKAGE.rglob("*.py"))}
 NAMES = {".".join(p.relative_to(PACKAGE.parent).with_suffix("").parts): p for p in TREES}
 
@@ -60,3 +62,8 @@ def test_heavy_libraries_are_imported_late(name):
     body = [n for n in TREES[NAMES[name]].body if isinstance(n, ast.Import | ast.ImportFrom)]
     loaded = {n.split(".")[-1 if n in NAMES else 0] for n in imports(ast.Module(body, []))}
     assert not loaded & (HEAVY | COMPILED)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_module_imports_an_adapter(name):
+    assert not INSIDE[name] & {f"bladegen.{adapter}" for adapter in ADAPTERS}

@@ -1,0 +1,146 @@
+"""A differentiable blade as a function that PyTorch differentiates through.
+
+In: vectors of parameters x (..., p), float64.  Out: sections [m] and quantities by name.
+Gradients (`backward`, `torch.func.grad`), forward mode (`jvp`) and `vmap` work; second
+derivatives are not known.  Computed on the CPU.  The extra `torch` installs the library.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from bladegen.adapters.outputs import Evaluated, Outputs
+from bladegen.errors import MissingLibraryError, PerturbationError
+from bladegen.parametric.model import ParametricBlade
+
+try:
+    import torch
+    from torch.autograd import Function
+except ImportError as error:
+    raise MissingLibraryError(error) from None
+
+__all__ = ["BladeFunction"]
+
+
+@dataclass(frozen=True, eq=False)
+class BladeFunction:
+    """Outputs of a blade's parameters, as tensors by name.
+
+    Parameters
+    ----------
+    model : ParametricBlade
+        The blade.
+    outputs : sequence of str
+        "sections" or names of `Quantities`.
+
+    Examples
+    --------
+    ``BladeFunction(model, ("volume",))(x)["volume"].backward()``
+    """
+
+    model: ParametricBlade
+    outputs: tuple[str, ...] = ("sections",)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "outputs", self._made.names)
+
+    @cached_property
+    def _made(self) -> Outputs:
+        return Outputs(self.model, self.outputs)
+
+    def __call__(self, x: Any) -> dict[str, Any]:
+        """Return outputs (..., *shape) at a tensor x (..., p).
+
+        Raises
+        ------
+        PerturbationError
+            If x is not of type float64.
+        """
+        if not isinstance(x, torch.Tensor) or x.dtype != torch.float64:
+            kind = x.dtype if isinstance(x, torch.Tensor) else type(x).__name__
+            raise PerturbationError(
+                f"x: got {kind}, must be a tensor of type torch.float64; x.double() makes one"
+            )
+        return dict(zip(self.outputs, _Values.apply(self._made, x), strict=True))
+
+
+def _at(made: Outputs, x: Any) -> Evaluated:
+    return made.at(x.detach().cpu().numpy())
+
+
+def _tensors(arrays: tuple[Any, ...], like: Any) -> tuple[Any, ...]:
+    # a copy: what is computed may be read-only, or a view that others hold
+    return tuple(torch.tensor(array, dtype=like.dtype, device=like.device) for array in arrays)
+
+
+def _batched(function: Any, size: int, places: tuple[Any, ...], made: Outputs, *given: Any) -> Any:
+    """Apply a function under vmap: bladegen takes leading axes itself."""
+    ahead = (
+        part.movedim(place, 0) if place is not None else part.expand(size, *part.shape)
+        for part, place in zip(given, places[1:], strict=True)
+    )
+    found = function.apply(made, *ahead)
+    return found, 0 if isinstance(found, torch.Tensor) else (0,) * len(found)
+
+
+class _Values(Function):  # type: ignore[misc]
+    """All outputs."""
+
+    @staticmethod
+    def forward(made: Outputs, x: Any) -> Any:
+        return _tensors(_at(made, x).values, x)
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: Any, output: Any) -> None:  # noqa: ARG004
+        ctx.made, x = inputs
+        ctx.save_for_backward(x)
+        ctx.save_for_forward(x)
+
+    @staticmethod
+    def backward(ctx: Any, *gradients: Any) -> Any:
+        return None, _Back.apply(ctx.made, *ctx.saved_tensors, *gradients)
+
+    @staticmethod
+    def jvp(ctx: Any, _: Any, dx: Any) -> Any:
+        return _Along.apply(ctx.made, *ctx.saved_tensors, dx)
+
+    @staticmethod
+    def vmap(info: Any, places: Any, made: Outputs, x: Any) -> Any:
+        return _batched(_Values, info.batch_size, places, made, x)
+
+
+class _First(Function):  # type: ignore[misc]
+    """A product with first derivatives, which cannot be differentiated again."""
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
+        pass
+
+    @staticmethod
+    def backward(*_: Any) -> Any:
+        raise PerturbationError("bladegen knows first derivatives only; create_graph=False")
+
+
+class _Back(_First):
+    """The gradient in x."""
+
+    @staticmethod
+    def forward(made: Outputs, x: Any, *gradients: Any) -> Any:
+        parts = tuple(g.detach().cpu().numpy() for g in gradients)
+        return _tensors((_at(made, x).vjp(parts),), x)[0]
+
+    @staticmethod
+    def vmap(info: Any, places: Any, made: Outputs, *given: Any) -> Any:
+        return _batched(_Back, info.batch_size, places, made, *given)
+
+
+class _Along(_First):
+    """Derivatives along a direction."""
+
+    @staticmethod
+    def forward(made: Outputs, x: Any, dx: Any) -> Any:
+        return _tensors(_at(made, x).jvp(dx.detach().cpu().numpy()), x)
+
+    @staticmethod
+    def vmap(info: Any, places: Any, made: Outputs, *given: Any) -> Any:
+        return _batched(_Along, info.batch_size, places, made, *given)

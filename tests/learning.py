@@ -1,0 +1,110 @@
+"""The adapters to torch and jax in the real libraries; `test_learning` runs this file.
+
+Not collected by itself: both libraries lie in an environment of their own.
+"""
+
+from functools import cache
+
+import jax
+import numpy as np
+import pytest
+import torch
+from jax.test_util import check_grads
+from numpy.testing import assert_allclose
+
+import bladegen as bg
+import bladegen.jax
+import bladegen.torch
+from bladegen.errors import PerturbationError
+
+EVERY = ("sections", "volume", "section_area")
+ADAPTERS = {"torch": bladegen.torch.BladeFunction, "jax": bladegen.jax.BladeFunction}
+jax.config.update("jax_enable_x64", True)
+
+
+@cache
+def model():
+    blade = bg.Blade.from_definition(bg.read("iea15mw"), landmarks=101)
+    parameters = (("pga", (0.5, 0.9)), ("chord", (0.5, 0.9)), "twist", "thickness")
+    eta, u = np.linspace(0.5, 1.0, 3), np.linspace(0.0, 1.0, 9)
+    return bg.ParametricBlade(blade, bg.ShapeSpace.bundled(), parameters, eta, u)
+
+
+def vectors(*lead):
+    rng = np.random.default_rng(5)
+    return model().baseline + 0.02 * rng.normal(size=(*lead, len(model().names)))
+
+
+def exact(name, x):
+    return model().jacobian(x) if name == "sections" else model().quantities(x).jacobian(name)
+
+
+@pytest.mark.parametrize("lead", [(), (4,), (2, 3)])
+@pytest.mark.parametrize("library", ADAPTERS)
+def test_values_are_those_of_the_model(library, lead):
+    x = vectors(*lead)
+    found = ADAPTERS[library](model(), EVERY)(torch.tensor(x) if library == "torch" else x)
+    assert list(found) == list(EVERY)
+    quantities = model().quantities(x)
+    for name, value in found.items():
+        wanted = model().sections(x) if name == "sections" else quantities[name]
+        assert value.shape == wanted.shape
+        assert_allclose(np.asarray(value), wanted, rtol=0, atol=1e-12)
+
+
+def test_torch_finds_gradients_right_forward_and_back():
+    function = bladegen.torch.BladeFunction(model(), EVERY)
+    x = torch.tensor(vectors(2), requires_grad=True)
+    assert torch.autograd.gradcheck(
+        lambda x: tuple(function(x).values()), x, eps=1e-5, atol=1e-5, check_forward_ad=True
+    )
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_functions_of_torch_and_jax_give_the_models_jacobian(name):
+    x = vectors()
+    by_torch = bladegen.torch.BladeFunction(model(), (name,))
+    by_jax = bladegen.jax.BladeFunction(model(), (name,))
+    wanted = exact(name, x)
+    close = {"rtol": 0, "atol": 1e-11 * np.abs(wanted).max()}
+    for jacobian in (torch.func.jacrev, torch.func.jacfwd):
+        assert_allclose(jacobian(lambda x: by_torch(x)[name])(torch.tensor(x)), wanted, **close)
+    assert_allclose(jax.jit(jax.jacrev(lambda x: by_jax(x)[name]))(x), wanted, **close)
+
+
+def test_batches_are_mapped():
+    x = vectors(4)
+    wanted = exact("volume", x)
+    by_torch = bladegen.torch.BladeFunction(model(), ("volume",))
+    by_jax = bladegen.jax.BladeFunction(model(), ("volume",))
+    mapped = torch.func.vmap(torch.func.grad(lambda x: by_torch(x)["volume"]))
+    assert_allclose(mapped(torch.tensor(x)), wanted, rtol=1e-12)
+    mapped = jax.jit(jax.vmap(jax.grad(lambda x: by_jax(x)["volume"])))
+    assert_allclose(mapped(x), wanted, rtol=1e-12)
+    ways = vectors(4) - model().baseline
+    along = torch.func.vmap(
+        lambda x, dx: torch.func.jvp(lambda x: by_torch(x)["volume"], (x,), (dx,))[1]
+    )
+    assert_allclose(along(torch.tensor(x), torch.tensor(ways)), (wanted * ways).sum(1), rtol=1e-11)
+
+
+def test_a_loss_goes_through_several_outputs_in_jax():
+    function = bladegen.jax.BladeFunction(model(), EVERY)
+    check_grads(lambda x: tuple(function(x).values()), (vectors(2),), 1, modes=["rev"], eps=1e-5)
+
+
+def test_what_is_not_there_is_said():
+    function = bladegen.torch.BladeFunction(model(), "volume")
+    x = torch.tensor(vectors(), requires_grad=True)
+    with pytest.raises(PerturbationError, match=r"got torch.float32, .* x.double\(\) makes one"):
+        function(x.float())
+    with pytest.raises(PerturbationError, match="got ndarray, must be a tensor"):
+        function(vectors())
+    slope = torch.autograd.grad(function(x)["volume"], x, create_graph=True)[0]
+    with pytest.raises(PerturbationError, match="first derivatives only"):
+        slope.sum().backward()
+    for adapter in ADAPTERS.values():
+        with pytest.raises(PerturbationError, match="did you mean volume"):
+            adapter(model(), ("volum",))
+    with jax.enable_x64(False), pytest.raises(PerturbationError, match="double precision is off"):
+        bladegen.jax.BladeFunction(model())(vectors())

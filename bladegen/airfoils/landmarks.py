@@ -223,7 +223,7 @@ def _placed(curve: Contour, parameters_in_bytes: bytes) -> Array:
         speed = np.hypot(*curve.spline(t, 1).T)  # 0 where a contour turns back on itself
         step = np.divide(excess, speed, out=np.zeros_like(excess), where=speed > 0)
         t = np.clip(t - step, start, end)
-        if np.abs(step).max() <= SETTLED:
+        if np.abs(step).max(initial=0.0) <= SETTLED:
             break
     return readonly(curve.spline(t))
 

@@ -136,7 +136,7 @@ def _parallel(
         for i in range(ITERATIONS):
             step, bending = _step(cubics, s)
             s = s - step
-            if not np.abs(step).max() > SETTLED:
+            if not np.abs(step).max(initial=0.0) > SETTLED:
                 break
             outside = (s < 0.0) | (s > 1.0)
             if i == 1 and outside.any():

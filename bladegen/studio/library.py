@@ -17,6 +17,7 @@ from threading import Lock
 from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import FileError, StudioError, visible
+from bladegen.exports.inventory import REPORT
 from bladegen.families.identity import fingerprint
 from bladegen.formats.airfoils import reading as airfoil_files
 from bladegen.formats.bundled import bundled
@@ -221,10 +222,10 @@ def _stored(name: str) -> str:
 def _blade_among(place: Path, shown: str) -> Path:
     """Return the one file of a folder that is a blade's; a single file is.
 
-    Lines of AeroDyn's main input that bladegen wrote with a blade are none.
+    Lines of AeroDyn's main input and reports that bladegen wrote with a blade are none.
     """
     files = list(place.iterdir())
-    whole = [path for path in files if not path.name.endswith(PART_SUFFIX)]
+    whole = [path for path in files if not path.name.endswith((PART_SUFFIX, REPORT))]
     found = [path for path in whole if len(files) == 1 or holds_blade(path)]
     if len(found) != 1:
         names = ", ".join(sorted(path.name for path in found)) or "none"

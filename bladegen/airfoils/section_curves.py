@@ -16,7 +16,7 @@ import numpy as np
 from bladegen.airfoils.noses import Noses, farthest
 from bladegen.airfoils.resizing import resizing, stretching
 from bladegen.airfoils.slopes import SplineSlopes
-from bladegen.airfoils.thickest import Places, thickest
+from bladegen.airfoils.thickest import Places, thickest, thickest_again
 from bladegen.curves.cubics import Cubics
 from bladegen.curves.roots import ITERATIONS, bracketed
 from bladegen.errors import GeometryError
@@ -112,19 +112,29 @@ class SectionCurves:
             places, planes = self._places, result.planes
             apart = planes[..., :behind] - planes[..., : -behind - 1 : -1]
             normal = result._along[:, ::-1] * (-1.0, 1.0)
-            wider = (normal[:, None] @ apart.swapaxes(0, 1)).max(axis=(1, 2), initial=-np.inf)
+            wider = (normal[:, None] @ apart.swapaxes(0, 1))[:, 0]
+            at, rows = np.argmax(wider, axis=1), np.arange(len(wider))
+            alone = places.settled & (wider[rows, at] < places.pair)
             room = np.minimum(places.upper, n - 1 - places.lower) - behind
-            kept = places.settled & (wider < places.pair)
-            kept &= self._untouched(result, behind, room)
-            others, height = np.flatnonzero(~kept), places.height.copy()
-            if others.size:
-                height[others] = result.take(others).thickness
+            kept = alone & self._untouched(result, behind, room)
+            about = ~kept & (alone | (places.settled & (np.abs(at - places.upper) <= NEAR)))
+            height = places.height.copy()
+            for some, again in ((about, True), (~kept & ~about, False)):
+                rows = np.flatnonzero(some)
+                if rows.size and again:
+                    given = result.planes[:, rows], result._along[rows], places.take(rows)
+                    height[rows] = thickest_again(self.splines, *given)
+                elif rows.size:
+                    height[rows] = result.take(rows).thickness
             vars(result)["_places"] = places._replace(height=height, settled=kept)
         return result
 
     def _untouched(self, other: "SectionCurves", behind: int, room: Indices) -> Mask:
         """Tell where landmarks moved behind leave the splines as they are `room` (k,) ahead."""
         n, tail, first = len(self.u), self.splines.tail, max(behind - NEAR, 0)
+        nearest = int(room.min())
+        if nearest > 0 and behind * tail[min(nearest - 1, n - 1)] < ROUNDING:  # by a chord at most
+            return np.ones(len(room), dtype=bool)
         sides = slice(first, behind), slice(n - 1 - first, n - 1 - behind, -1)
         moved = sum(
             np.abs(other.planes[..., at] - self.planes[..., at]).sum(axis=0) for at in sides

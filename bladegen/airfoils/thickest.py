@@ -16,7 +16,7 @@ from bladegen.airfoils.slopes import SplineSlopes
 from bladegen.curves.cubics import Cubics, pieces
 from bladegen.support.arrays import Array, Indices, Mask
 
-__all__ = ["Places", "thickest"]
+__all__ = ["Places", "thickest", "thickest_again"]
 
 REACH = 6  # landmarks either side of the thickest pair, among which the place is sought
 FEWEST = 8 * REACH  # landmarks of a section that is measured so
@@ -36,6 +36,8 @@ class Places(NamedTuple):
         Where the landmarks nearest to it are known.
     upper, lower : (k,) arrays of int
         The landmarks nearest to it on the suction and on the pressure side.
+    off : (2, k) array
+        By how much of the way to the next landmark it lies after those, or before.
     pair : (k,) array
         The height of the thickest pair of opposite landmarks.
     """
@@ -44,7 +46,14 @@ class Places(NamedTuple):
     settled: Mask
     upper: Indices
     lower: Indices
+    off: Array
     pair: Array
+
+    def take(self, rows: Indices) -> "Places":
+        """Return those of some of the sections."""
+        height, settled, upper, lower, off, pair = self
+        off, pair = off[:, rows], pair[rows]
+        return Places(height[rows], settled[rows], upper[rows], lower[rows], off, pair)
 
 
 def thickest(slopes: SplineSlopes, planes: Array, along: Array) -> Places:
@@ -58,16 +67,18 @@ def thickest(slopes: SplineSlopes, planes: Array, along: Array) -> Places:
         Unit vectors of the direction to which heights are normal.
     """
     k, n = planes.shape[1:]
-    axes = np.empty((k, 2, 2))
-    axes[:, 0], axes[:, 1] = along, along[:, ::-1] * (-1.0, 1.0)
-    middle = n // 2
+    axes, middle = _axes(along), n // 2
     apart = planes[:, :, :middle] - planes[:, :, :middle:-1]
     paired = (axes[:, 1:] @ apart.swapaxes(0, 1))[:, 0]
     best = np.argmax(paired, axis=1)
     pair = paired[np.arange(k), best]
-    places = Places(np.empty(k), np.zeros(k, dtype=bool), best, n - 1 - best, pair)
+    places = Places(
+        np.empty(k), np.zeros(k, dtype=bool), best, n - 1 - best, np.zeros((2, k)), pair
+    )
     if n >= FEWEST:
-        places = _followed(slopes, planes, axes, best, pair)
+        best = np.minimum(np.maximum(best, REACH + 1), middle - REACH - 2)
+        upper, lower, off = _nearest(planes, axes, best)
+        places = _followed(slopes, planes, axes, Places(*places[:2], upper, lower, off, pair))
     rows = np.flatnonzero(~places.settled)
     if rows.size:
         some = planes[:, rows]
@@ -78,25 +89,38 @@ def thickest(slopes: SplineSlopes, planes: Array, along: Array) -> Places:
     return places
 
 
-def _followed(
-    slopes: SplineSlopes, planes: Array, axes: Array, best: Indices, pair: Array
-) -> Places:
-    """Follow the height from the thickest pairs of landmarks to where it is largest."""
-    n, rows = planes.shape[2], np.arange(len(best))
-    best = np.minimum(np.maximum(best, REACH + 1), n // 2 - REACH - 2)
-    upper, lower, offset, beyond = _nearest(planes, axes, best)
-    landmarks, both = np.concatenate([upper, lower]), np.concatenate([rows, rows])
-    near = landmarks[:, None] + np.arange(-1, 2)
+def thickest_again(slopes: SplineSlopes, planes: Array, along: Array, known: Places) -> Array:
+    """Return the largest heights (k,) of sections whose thickest places are about the known ones.
+
+    Parameters are those of `thickest`.
+    """
+    places = _followed(slopes, planes, _axes(along), known)
+    rows = np.flatnonzero(~places.settled)
+    if rows.size:
+        places.height[rows] = thickest(slopes, planes[:, rows], along[rows]).height
+    return places.height
+
+
+def _axes(along: Array) -> Array:
+    """Return unit vectors and the normals to them, (k, 2, 2)."""
+    axes = np.empty((len(along), 2, 2))
+    axes[:, 0], axes[:, 1] = along, along[:, ::-1] * (-1.0, 1.0)
+    return axes
+
+
+def _followed(slopes: SplineSlopes, planes: Array, axes: Array, near: Places) -> Places:
+    """Follow the height from places nearby to where it is largest."""
+    rows = np.arange(len(near.upper))
+    landmarks, both = np.concatenate([near.upper, near.lower]), np.concatenate([rows, rows])
+    around = landmarks[:, None] + np.arange(-1, 2)
     turn = np.concatenate([axes, axes])
-    points = turn @ planes[:, both[:, None], near].swapaxes(0, 1)
+    points = turn @ planes[:, both[:, None], around].swapaxes(0, 1)
     rates = turn @ slopes.around(planes, both, landmarks).swapaxes(0, 1)
-    s = np.concatenate([offset, beyond])
-    after = s > 0.0
-    height, settled = _parallel(slopes.u, points, rates, landmarks, after, s + ~after)
-    return Places(height, settled, upper, lower, pair)
+    height, settled, off = _parallel(slopes.u, points, rates, landmarks, near.off.reshape(-1))
+    return Places(height, settled, near.upper, near.lower, off.reshape(2, -1), near.pair)
 
 
-def _nearest(planes: Array, axes: Array, best: Indices) -> tuple[Indices, Indices, Array, Array]:
+def _nearest(planes: Array, axes: Array, best: Indices) -> tuple[Indices, Indices, Array]:
     """Return the landmarks nearest to thickest places, and by how many landmarks they are missed.
 
     From the thickest pairs, by landmarks alone.
@@ -118,19 +142,20 @@ def _nearest(planes: Array, axes: Array, best: Indices) -> tuple[Indices, Indice
     steps = np.rint(passed)
     upper = best + inner - REACH
     lower = np.minimum(np.maximum(n - 1 - upper + steps.astype(np.int64), n // 2 + 1), n - 2)
-    return upper, lower, offset, passed - steps
+    return upper, lower, np.array([offset, passed - steps])
 
 
 def _parallel(
-    u: Array, points: Array, rates: Array, landmarks: Indices, after: Mask, s: Array
-) -> tuple[Array, Mask]:
-    """Return the heights (k,) where sides are parallel, and where that is settled.
+    u: Array, points: Array, rates: Array, landmarks: Indices, off: Array
+) -> tuple[Array, Mask, Array]:
+    """Return the heights (k,) where sides are parallel, where that is settled, and the places.
 
     Points and slopes (2 k, 2, 3) are at landmarks (2 k,) and their neighbours, first of all
-    suction, then of all pressure sides; places are sought from `s` on, in the cell after the
+    suction, then of all pressure sides; places are sought from `off` on, in the cell after the
     landmark or before it.
     """
-    k = len(s) // 2
+    k, after = len(off) // 2, off > 0.0
+    s = off + ~after
     cubics = _between(u, points, rates, landmarks, after)
     with np.errstate(all="ignore"):
         for i in range(ITERATIONS):
@@ -146,7 +171,8 @@ def _parallel(
         a, b, c, d = (part[1] for part in cubics)
         y = ((d * s + c) * s + b) * s + a
         settled = (np.abs(step) <= SETTLED) & (np.abs(s - 0.5) <= 0.5 + ROUNDING)
-        return y[:k] - y[k:], settled[:k] & settled[k:] & (bending < 0.0)
+        settled = settled[:k] & settled[k:] & (bending < 0.0)
+        return y[:k] - y[k:], settled, s - ~after
 
 
 def _between(

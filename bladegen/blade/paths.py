@@ -231,18 +231,16 @@ class SectionSpline:
     __repr__ = brief
 
     @cached_property
-    def _parts(self) -> tuple[Interpolant, Interpolant, Interpolant]:
+    def _parts(self) -> Interpolant:
         angle, log_stretch = affine.polar(self.M)
-        return (
-            pchip(self.knots, np.unwrap(angle)),
-            pchip(self.knots, log_stretch),
-            pchip(self.knots, self.b),
-        )
+        parts = np.unwrap(angle)[:, None], log_stretch.reshape(-1, 4), self.b
+        return pchip(self.knots, np.concatenate(parts, axis=1))
 
     def __call__(self, q: Array) -> tuple[Array, Array]:
         """Return M (k, 2, 2) and b (k, 2) at parameters (k,)."""
-        angle, log_stretch, b = self._parts
-        return affine.from_polar(angle(q), log_stretch(q)), b(q)
+        parts = self._parts(q)
+        M = affine.from_polar(parts[..., 0], parts[..., 1:5].reshape(*q.shape, 2, 2))
+        return M, parts[..., 5:]
 
 
 PathMaker = Callable[[Array, Array, Array], tuple[Path, Array]]

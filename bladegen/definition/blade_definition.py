@@ -147,9 +147,22 @@ class ReferenceAxis:
         x, y, z = self(1.0) - self(0.0)
         return f"<ReferenceAxis: {z:.4g} m long, tip at x = {x:.4g} m, y = {y:.4g} m from the root>"
 
+    @cached_property
+    def _together(self) -> Interpolant | None:
+        """All three in one, where they are PCHIP on one grid."""
+        parts = self.x, self.y, self.z
+        grid = self.x.grid
+        alike = all(one.spline is pchip and np.array_equal(one.grid, grid) for one in parts)
+        return pchip(grid, np.stack([one.values for one in parts], axis=-1)) if alike else None
+
     def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
         """Return points, or `nu`-th derivatives, of shape (..., 3) at `eta`."""
-        return np.stack([self.x(eta, nu), self.y(eta, nu), self.z(eta, nu)], axis=-1)
+        if self._together is None:
+            return np.stack([self.x(eta, nu), self.y(eta, nu), self.z(eta, nu)], axis=-1)
+        spans = numbers(eta, "eta", DefinitionError)
+        inside = np.clip(spans, self.z.grid[0], self.z.grid[-1])
+        points = np.asarray(self._together(inside, nu=nu))
+        return np.where((inside == spans)[..., None], points, 0.0) if nu else points
 
 
 @dataclass(frozen=True, repr=False)

@@ -12,8 +12,9 @@ from bladegen.support.arguments import amount, function, numbers
 from bladegen.support.arrays import Array, ArrayLike, readonly
 from bladegen.support.values import equal, hashed
 
-__all__ = ["SMALLEST_STEP", "Distribution", "Interpolant", "pchip", "united"]
+__all__ = ["OVER_SPAN", "SMALLEST_STEP", "Distribution", "Interpolant", "pchip", "united"]
 
+OVER_SPAN = "a bladegen.Distribution; Distribution.constant(value) is the same all over"
 SMALLEST_STEP = 1e-9  # of the span from station to station: a tenth of a micrometre
 STEEPEST = 1e15  # change over a whole span; steeper curves overflow
 

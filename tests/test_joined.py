@@ -93,3 +93,14 @@ def test_some_landmarks_are_those_of_the_whole_sections(n, edge):
     some = np.union1d(np.arange(0, n, 7), n - 1 - np.arange(0, n, 7))
     watched = blade.placed(blade.shape.at_landmarks(ETA, some), ETA)
     assert_allclose(watched, blade.sections(ETA)[:, some], rtol=0, atol=1e-13)
+
+
+@PATHS
+@pytest.mark.parametrize("edge", [MinimumThickness(0.01), Sharp(), AsGiven()])
+def test_no_spans_have_no_sections(path, edge):
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), path=path, trailing_edge=edge)
+    variant = blade.perturbed(SPACE, [0.01, 0.0, 0.0, 0.0], thickness=1.1)
+    for one in (blade, variant):
+        assert one.sections([]).shape == (0, 401, 3)
+        assert one.profiles(np.zeros((0, 3)), np.linspace(0.0, 1.0, 9)).shape == (0, 3, 9, 2)
+        assert one.relative_thickness([]).shape == (0,)

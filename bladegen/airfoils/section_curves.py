@@ -101,7 +101,7 @@ class SectionCurves:
         What was measured of these ahead of them is kept, where the others do not reach.
         """
         result, n = SectionCurves(self.splines, points), len(self.u)
-        if "_measured" not in vars(self):
+        if not behind or "_measured" not in vars(self):
             return result
         noses = self._measured
         room = np.minimum(noses.low, n - 1 - noses.high) - behind
@@ -132,7 +132,7 @@ class SectionCurves:
     def _untouched(self, other: "SectionCurves", behind: int, room: Indices) -> Mask:
         """Tell where landmarks moved behind leave the splines as they are `room` (k,) ahead."""
         n, tail, first = len(self.u), self.splines.tail, max(behind - NEAR, 0)
-        nearest = int(room.min())
+        nearest = int(room.min(initial=n))
         if nearest > 0 and behind * tail[min(nearest - 1, n - 1)] < ROUNDING:  # by a chord at most
             return np.ones(len(room), dtype=bool)
         sides = slice(first, behind), slice(n - 1 - first, n - 1 - behind, -1)

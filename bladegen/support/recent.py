@@ -1,6 +1,7 @@
 """The last few results of a function of bytes, kept by a value for as long as it lives."""
 
 from collections.abc import Callable
+from threading import Lock
 from typing import Generic, TypeVar
 
 __all__ = ["Recent"]
@@ -21,13 +22,16 @@ class Recent(Generic[T]):
     def __init__(self, count: int) -> None:
         self._count = count
         self._known: dict[bytes, T] = {}
+        self._lock = Lock()
 
     def get(self, key: bytes, make: Callable[[], T]) -> T:
         """Return what is known by a key, or make it."""
-        value = self._known.pop(key, None)
-        if value is None:
-            value = make()
-        self._known[key] = value
-        while len(self._known) > self._count:
-            self._known.pop(next(iter(self._known)), None)
+        with self._lock:
+            known = self._known.get(key)
+        value = make() if known is None else known
+        with self._lock:
+            self._known.pop(key, None)
+            self._known[key] = value
+            while len(self._known) > self._count:
+                del self._known[next(iter(self._known))]
         return value

@@ -15,6 +15,7 @@ from bladegen.exports.registry import format_of, suffix_of
 from bladegen.support.arguments import instance, path_of
 from bladegen.support.arrays import Array
 from bladegen.support.files import replacing
+from bladegen.support.threads import one_thread
 from bladegen.surface.grids import grid
 from bladegen.surface.tips import Tip, flat_tip
 
@@ -122,6 +123,11 @@ def aside(path: Path) -> Path:
 
 def write(products: Products, path: Path) -> None:
     """Write one file from products that may serve several."""
+    with one_thread():
+        _write(products, path)
+
+
+def _write(products: Products, path: Path) -> None:
     row = format_of(path)
     target, miss = path, None
     if row.kind is Kind.solid:

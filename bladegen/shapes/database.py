@@ -11,6 +11,7 @@ from bladegen.shapes import cst
 from bladegen.shapes.affine import standardise
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array
+from bladegen.support.threads import one_thread
 
 __all__ = ["build_space"]
 
@@ -47,9 +48,7 @@ def build_space(
     dict
         The residual of each airfoil's CST fit, RMS [chord].
     """
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(1):  # the same sums in the same order, whatever the machine
+    with one_thread():  # the same sums in the same order, whatever the machine
         shapes = np.stack([landmarks(xy, n) for xy in airfoils.values()])
         if count == 0:
             about = f"{len(airfoils)} airfoils"

@@ -9,6 +9,7 @@ from bladegen.errors import GeometryError, SpaceError
 from bladegen.shapes import grassmann
 from bladegen.shapes.saved_spaces import NO_SPREAD
 from bladegen.support.arrays import Array
+from bladegen.support.threads import one_thread
 
 __all__ = ["chunks", "parameters", "principal"]
 
@@ -39,8 +40,11 @@ def principal(points: Array, modes: int) -> tuple[Array, Array, Array]:
     GeometryError
         If the mean does not converge.
     """
-    from scipy.linalg import eigh
+    with one_thread():
+        return _principal(points, modes)
 
+
+def _principal(points: Array, modes: int) -> tuple[Array, Array, Array]:
     count, n, _ = points.shape
     mean = _karcher_mean(points)
     # The covariance acts on tangent vectors as 2n numbers: its Gram matrix is summed up
@@ -49,12 +53,12 @@ def principal(points: Array, modes: int) -> tuple[Array, Array, Array]:
     for part in chunks(count):
         logs = grassmann.log(mean[None], points[part]).reshape(-1, 2 * n)
         gram += logs.T @ logs
-    variances = np.maximum(np.linalg.eigvalsh(gram / count)[::-1], 0.0)
+    variances, vectors = np.linalg.eigh(gram / count)
+    variances = np.maximum(variances[::-1], 0.0)
     if not variances[modes - 1] >= NO_SPREAD**2:
         spread = int(np.count_nonzero(variances >= NO_SPREAD**2))
         raise SpaceError(f"modes: got {modes}, the shapes vary in {spread} directions only")
-    _, vectors = eigh(gram, subset_by_index=[2 * n - modes, 2 * n - 1])
-    kept = _horizontal(mean, vectors[:, ::-1].T.reshape(modes, n, 2))
+    kept = _horizontal(mean, vectors[:, : -modes - 1 : -1].T.reshape(modes, n, 2))
     return mean, kept, variances
 
 

@@ -65,6 +65,22 @@ def test_variants_of_a_default_family_are_what_perturbed_takes(name):
     assert kinds & {"has a concave nose", "has a drooped tail", "has a pinched nose"}
 
 
+@pytest.mark.parametrize("tries", [1, 2, 9, 1000])
+def test_each_variant_is_its_first_draw_that_is_sound(tries):
+    family = bg.family(blade(), SPACE, count=3, seed=5, spans=40, tries=tries)
+    index = np.arange(3)
+    values, attempts, reasons = family.settled(index)
+    for place in index:
+        one = index[place : place + 1]
+        draws = [family.design.at(one)]
+        draws += [family.design.redrawn(one, k) for k in range(1, attempts[place])]
+        said = [family._rules.tested(draw)[0] for draw in draws]
+        assert all(said[:-1])
+        assert said[-1] == reasons[place]
+        assert not said[-1] or attempts[place] == tries
+        assert_array_equal(draws[-1][0], values[place])
+
+
 def test_tries_are_limited():
     hopeless = {"t1": (5.0, 6.0)}
     family = bg.family(blade(), SPACE, count=2, tries=3, bounds=hopeless, spans=40)

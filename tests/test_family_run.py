@@ -20,6 +20,7 @@ from bladegen.exports.options import Options
 from bladegen.families.family import BLOCK
 from bladegen.families.folder import FamilyFolder, sections_digest
 from bladegen.families.order import Order
+from bladegen.families.processes import in_processes
 from bladegen.families.run import run
 from bladegen.measures import checks
 from bladegen.measures.properties import volume
@@ -114,9 +115,32 @@ def test_properties_are_those_of_the_sections(reference):
     assert_allclose(table["section_perimeter_m"][5], wanted[:, 6], rtol=1e-6)
 
 
-def test_processes_make_the_same_family(reference, tmp_path):
-    assert run(Order(planned(), tmp_path / "jobs"), jobs=2) == COUNT
+@pytest.mark.parametrize("jobs", [2, 5])
+def test_threads_make_the_same_family(reference, tmp_path, jobs):
+    assert run(Order(planned(), tmp_path / "jobs"), jobs=jobs) == COUNT
     same(whole(tmp_path / "jobs"), whole(reference))
+
+
+@pytest.fixture(scope="module")
+def with_files(tmp_path_factory):
+    """A family with files made by one process without any interruption."""
+    target = tmp_path_factory.mktemp("family") / "files"
+    assert run(Order(small(9), target, ("glb",), options=COARSE)) == 9
+    return target
+
+
+def test_processes_make_the_same_files(with_files, tmp_path, monkeypatch):
+    """Two of them have blocks of their own already where there are three variants or four."""
+    given = []
+
+    def told(order, left, jobs):
+        given.append((len(left), jobs))
+        return in_processes(order, left, jobs)
+
+    monkeypatch.setattr("bladegen.families.run.in_processes", told)
+    assert run(Order(small(9), tmp_path / "jobs", ("glb",), options=COARSE), jobs=2) == 9
+    same(whole(tmp_path / "jobs"), whole(with_files))
+    assert given == [(5, 2)]
 
 
 def test_a_cluster_makes_the_same_family(reference, tmp_path):
@@ -152,7 +176,7 @@ def test_a_killed_worker_of_a_cluster_changes_nothing(reference, tmp_path):
     same(whole(tmp_path / "dask"), whole(reference))
 
 
-def test_a_killed_process_is_replaced(reference, tmp_path):
+def test_a_killed_process_is_replaced(with_files, tmp_path):
     target = tmp_path / "pool"
     killed = []
 
@@ -164,9 +188,9 @@ def test_a_killed_process_is_replaced(reference, tmp_path):
             os.kill(child.pid, signal.SIGKILL)
             killed.append(done)
 
-    run(Order(planned(), target), jobs=2, progress=kill)
+    run(Order(small(9), target, ("glb",), options=COARSE), jobs=2, progress=kill)
     assert killed
-    same(whole(target), whole(reference))
+    same(whole(target), whole(with_files))
 
 
 COMMAND = [
@@ -221,7 +245,9 @@ def test_runs_killed_at_any_point_leave_no_workers_and_go_on(
         _, err = process.communicate(timeout=LONG)  # nobody holds its pipes
         if process.returncode == 128 + how:
             words = "interrupted" if how == signal.SIGINT else "terminated"
-            assert err == (f"bladegen: {target}: the same command with --resume goes on; {words}\n")
+            *notes, last = err.splitlines()
+            assert last == f"bladegen: {target}: the same command with --resume goes on; {words}"
+            assert all(note.startswith("note: still to be made: ") for note in notes)
             assert not list(target.glob(".*.lock"))
         if (target / "manifest.parquet").exists():
             break
@@ -231,6 +257,27 @@ def test_runs_killed_at_any_point_leave_no_workers_and_go_on(
     same(whole(target), whole(reference))
     assert not list(target.glob("sections.zarr/**/*.partial"))
     assert run(Order(planned(), target), resume=True) == 0
+
+
+def test_runs_killed_while_they_write_files_leave_no_workers_and_go_on(command, tmp_path):
+    target, count = tmp_path / "killed", 12
+    asked = ["--count", str(count), "--spans", str(SPANS), "--format", "glb", "--stations", "40"]
+    process = subprocess.Popen([*COMMAND, "-o", str(target), *asked, "--jobs", "2"])
+    deadline = time.monotonic() + LONG
+    while process.poll() is None and time.monotonic() < deadline:
+        if list(target.glob("parts/*.parquet")):
+            break
+        time.sleep(0.01)
+    workers = children(process.pid)
+    process.kill()
+    process.wait(timeout=LONG)
+    assert gone_within(LONG, workers)
+    done = command("family", "dtu10mw", "-o", target, *asked, "--jobs", "2", "--resume")
+    assert done["status"] == 0, done["err"]
+    table = pq.read_table(target / "manifest.parquet").to_pydict()
+    assert table["index"] == list(range(count))
+    for name, digest in zip(table["glb_file"], table["glb_sha256"], strict=True):
+        assert digest_of(target / name) == digest
 
 
 def test_a_full_disk_is_one_line_and_the_run_goes_on(reference, command, tmp_path):

@@ -80,7 +80,9 @@ def family(
     producing: Producing = PRODUCING,
     making: Making = MAKING,
     mirror: Mirror = False,
-    jobs: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
+    jobs: Annotated[
+        int, typer.Option(help="Threads, or processes where files are written, at work.")
+    ] = 1,
     dask: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead of --jobs.")
     ] = None,

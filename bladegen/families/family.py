@@ -34,6 +34,7 @@ from bladegen.variants.verdicts import THINNEST
 __all__ = ["BLOCK", "POLICIES", "Family", "family"]
 
 BLOCK = 64  # variants made at once; what a run may lose
+AHEAD = 16  # draws of a variant looked at together, for the first that keeps to the data
 TRIES = 1000  # draws of one variant before it is kept and marked
 SPANS = 100
 POLICIES = ("redraw", "keep")
@@ -151,7 +152,7 @@ class Family:
 
     @property
     def _redraws(self) -> bool:
-        return self.invalid == "redraw" and self.design.redraws
+        return self.invalid == "redraw" and self.design.redraws and self.tries > 1
 
     def named(self, block: Block, place: int) -> Blade:
         """Return one variant of a block as a blade."""
@@ -205,14 +206,19 @@ class Family:
         if not self._redraws:
             return values, attempts, reasons
         again = np.flatnonzero([bool(reason) for reason in reasons])
-        for attempt in range(1, self.tries):
-            if not again.size:
-                break
-            values[again] = self.design.redrawn(index[again], attempt)
-            attempts[again] += 1
-            for row, reason in zip(again, self._rules.tested(values[again]), strict=True):
+        while again.size:
+            ahead = np.minimum(attempts[again, None] + np.arange(AHEAD), self.tries - 1)
+            drawn = self.design.redrawn(np.repeat(index[again], AHEAD), ahead.ravel())
+            near = ~self._rules.strayed(drawn).reshape(ahead.shape)
+            at = np.where(near.any(axis=1), np.argmax(near, axis=1), AHEAD - 1)
+            rows = np.arange(len(again))
+            values[again] = drawn.reshape(*ahead.shape, -1)[rows, at]
+            attempts[again] = ahead[rows, at] + 1
+            some = near[rows, at] | (attempts[again] >= self.tries)
+            tested = self._rules.tested(values[again[some]])
+            for row, reason in zip(again[some], tested, strict=True):
                 reasons[row] = reason
-            again = again[[bool(reasons[row]) for row in again]]
+            again = again[[bool(reasons[row]) and attempts[row] < self.tries for row in again]]
         return values, attempts, reasons
 
 

@@ -202,7 +202,8 @@ class FamilyFolder:
                 schema = pq.read_schema(self.part(0))
                 with pq.ParquetWriter(temporary, schema, compression="zstd") as writer:
                     for number in numbers:
-                        writer.write_table(pq.read_table(self.part(number)))
+                        with pq.ParquetFile(self.part(number)) as part:
+                            writer.write_table(part.read())
                 _flush(temporary)
         shutil.rmtree(self.parts, ignore_errors=True)
         for left in [*self.path.glob(f"{ZARR}/**/*.partial"), *self.blades.glob(".*")]:
@@ -213,10 +214,12 @@ def read_manifest(place: FamilyFolder, columns: Sequence[str]) -> dict[str, Any]
     """Return columns of a manifest: texts as lists, numbers as arrays."""
     import pyarrow.parquet as pq
 
-    table = pq.read_table(place.manifest, columns=list(columns))
+    with pq.ParquetFile(place.manifest) as file:  # `read_table` would load pandas
+        table = file.read(columns=list(columns))
+    listed = {name: table.column(name).to_pylist() for name in columns}
     return {
-        name: values.to_pylist() if str(values.type) == "string" else values.to_numpy()
-        for name, values in zip(table.column_names, table.columns, strict=True)
+        name: values if table.schema.field(name).type == "string" else np.array(values)
+        for name, values in listed.items()
     }
 
 
@@ -232,12 +235,27 @@ def _table(rows: dict[str, Any]) -> Any:
 
     columns = {}
     for name, values in rows.items():
-        if isinstance(values, np.ndarray) and values.ndim == 2:
-            flat = pa.array(np.ascontiguousarray(values).reshape(-1))
-            columns[name] = pa.FixedSizeListArray.from_arrays(flat, values.shape[1])
-        else:
-            columns[name] = pa.array(values)
+        column = np.asarray(values)
+        columns[name] = _column(column.reshape(-1))
+        if column.ndim == 2:
+            columns[name] = pa.FixedSizeListArray.from_arrays(columns[name], column.shape[1])
     return pa.table(columns)
+
+
+def _column(values: Any) -> Any:
+    """Return an Arrow array (n,) of numbers or texts; `pyarrow.array` would load pandas."""
+    import pyarrow as pa
+
+    if values.dtype.kind in "US":
+        texts = [text.encode() for text in values.tolist()]
+        offsets = np.cumsum([0, *map(len, texts)], dtype=np.int32)
+        parts = pa.py_buffer(offsets), pa.py_buffer(b"".join(texts))
+        return pa.StringArray.from_buffers(len(texts), *parts)
+    data = np.packbits(values, bitorder="little") if values.dtype == bool else values
+    kind = pa.from_numpy_dtype(values.dtype)
+    return pa.Array.from_buffers(
+        kind, len(values), [None, pa.py_buffer(np.ascontiguousarray(data))]
+    )
 
 
 def _flush(path: Path) -> None:

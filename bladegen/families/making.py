@@ -17,6 +17,7 @@ from bladegen.families.manifest_rows import drawn_again, rows_of
 from bladegen.families.order import Order
 from bladegen.support.arrays import Indices
 from bladegen.support.files import digest_of
+from bladegen.support.threads import one_thread
 
 __all__ = ["Made", "make_block", "sections_of"]
 
@@ -26,11 +27,9 @@ Made = tuple[int, list[str], float]  # a block's number, what was drawn again an
 
 def make_block(order: Order, number: int) -> Made:
     """Make one block, whole."""
-    from threadpoolctl import threadpool_limits
-
     family, start = order.family, time.monotonic()
     index = np.arange(number * order.block, min((number + 1) * order.block, len(family)))
-    with threadpool_limits(1):  # the same sums in the same order, whatever the machine
+    with one_thread():  # the same sums in the same order, whatever the machine
         block = sections_of(order, index)
         rows = rows_of(family, block)
         faults = _faults(order, block)
@@ -42,9 +41,7 @@ def make_block(order: Order, number: int) -> Made:
 
 def sections_of(order: Order, index: Indices) -> Block:
     """Make the sections of some variants, in one thread as all that they are made from."""
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(1):
+    with one_thread():
         return order.family.block(index, dtype=FLOAT_TYPES[order.dtype], measured=True)
 
 

@@ -13,8 +13,6 @@ from bladegen.variants.draws import WIDEST
 
 __all__ = ["drawn_again", "rows_of"]
 
-FEW = 8  # variants measured at once: bounds memory
-
 
 def drawn_again(family: Family, block: Block) -> list[str]:
     """Say which variants of a block were drawn more than once, and why."""
@@ -30,9 +28,8 @@ def rows_of(family: Family, block: Block) -> dict[str, Any]:
     batch = block.batch
     assert batch.measures is not None  # _make asked for them
     count = len(block.index)
-    few = (batch.sections[i : i + FEW] for i in range(0, count, FEW))  # bounds memory
-    measured = [polygons.volume_and_area(sections.astype(np.float64)) for sections in few]
-    volume, surface = (np.concatenate(parts) for parts in zip(*measured, strict=True))
+    each = (sections.astype(np.float64) for sections in batch.sections)  # fits in a cache
+    volume, surface = np.array([polygons.volume_and_area(sections) for sections in each]).T
     rows: dict[str, Any] = {
         "index": block.index,
         "name": [family.name(int(place)) for place in block.index],

@@ -17,7 +17,7 @@ from bladegen.surface.fitting import fitted
 
 __all__ = ["Order"]
 
-FEW = 8  # variants in a block that writes files for each
+FEW = 2  # variants in a block that writes files for each: shared out evenly among processes
 
 
 @dataclass(frozen=True, eq=False)

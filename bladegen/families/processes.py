@@ -1,4 +1,9 @@
-"""Blocks of a family made elsewhere: in processes of this machine, or on a Dask cluster."""
+"""Blocks of a family made side by side: in threads, in processes, or on a Dask cluster.
+
+Sections are made by threads: nearly all of that is compiled or done by numpy, which leave Python's
+lock alone, and a process takes as long to start as hundreds of variants.  Files are made by
+processes: OCCT and writers in Python hold the lock.
+"""
 
 import logging
 import os
@@ -10,8 +15,9 @@ from typing import Any
 from bladegen.errors import ExportError, FamilyError
 from bladegen.families.making import Made, make_block
 from bladegen.families.order import Order
+from bladegen.support.threads import one_thread
 
-__all__ = ["in_processes", "on_cluster"]
+__all__ = ["in_processes", "in_threads", "on_cluster"]
 
 logger = logging.getLogger(__name__)
 
@@ -30,6 +36,24 @@ def _start(order: Order, parent: int) -> None:
 
 def _make_here(number: int) -> Made:
     return make_block(_ORDER[0], number)
+
+
+def in_threads(order: Order, left: list[int], jobs: int) -> Generator[Made]:
+    """Make blocks in threads of this process; told to stop, end those at work and no more."""
+    from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+
+    coming = iter(left)
+    with one_thread(), ThreadPoolExecutor(jobs, thread_name_prefix="blocks") as pool:
+        try:
+            waiting = {pool.submit(make_block, order, one) for one in islice(coming, jobs)}
+            while waiting:
+                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                more = islice(coming, len(finished))
+                waiting |= {pool.submit(make_block, order, one) for one in more}
+                for task in finished:
+                    yield task.result()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
 
 
 def in_processes(order: Order, left: list[int], jobs: int) -> Generator[Made]:

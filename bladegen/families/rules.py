@@ -56,6 +56,11 @@ class Rules:
             return np.zeros(len(values), dtype=bool)
         return leaving(self.sections, self.split(values)[0])
 
+    def strayed(self, values: Array) -> Mask:
+        """Tell which variants (b, d) leave their bounds or the space's data, (b,)."""
+        outside: Mask = np.array([bool(said) for said in self.what.outside(values)])
+        return outside | self.left(values)
+
     def _strayed(self, values: Array) -> list[str]:
         """Say which variants (b, d) leave their bounds or the space's data; "" if none does."""
         reasons = self.what.outside(values)

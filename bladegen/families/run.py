@@ -1,4 +1,4 @@
-"""Runs that write families: block by block, in this process, in several, or on a Dask cluster.
+"""Runs that write families: block by block, one after the other or side by side.
 
 Blocks do not know of each other, so who makes them and in what order changes nothing.
 """
@@ -15,7 +15,7 @@ from bladegen.families.folder import FLOAT_TYPES
 from bladegen.families.forecasts import Forecast, free_bytes, require_room
 from bladegen.families.making import make_block, sections_of
 from bladegen.families.order import Order
-from bladegen.families.processes import in_processes, on_cluster
+from bladegen.families.processes import in_processes, in_threads, on_cluster
 from bladegen.support.arguments import whole
 from bladegen.support.files import folder
 
@@ -40,7 +40,7 @@ def run(
     order : Order
         What and where.
     jobs : int
-        Processes on this machine.
+        Threads of this process, or processes of this machine where files are written.
     client : dask.distributed.Client, optional
         A cluster that makes the blocks instead.
     resume : bool
@@ -85,7 +85,8 @@ def run(
                 made, several = on_cluster(order, left, client), len(client.nthreads())
             elif jobs > 1 and len(left) > 1:
                 several = min(jobs, len(left))
-                made = in_processes(order, left, several)
+                beside = in_processes if order.suffixes else in_threads
+                made = beside(order, left, several)
             else:
                 made, several = (make_block(order, number) for number in left), 1
             with closing(made):

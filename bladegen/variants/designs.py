@@ -152,11 +152,12 @@ class Design:
         """Whether a variant that is not sound may be drawn again."""
         return self.kind not in FIXED
 
-    def redrawn(self, index: Indices, attempt: int) -> Array:
+    def redrawn(self, index: Indices, attempt: int | Indices) -> Array:
         """Return other values (m, d) of some variants: independent draws in the same region."""
         region = DESIGNS[self.kind][2]
         dimension = len(self.what.names)
-        unit = [draws.point(self.seed, int(i), attempt, dimension) for i in index]
+        each = (some.tolist() for some in np.broadcast_arrays(index, attempt))
+        unit = [draws.point(self.seed, i, a, dimension) for i, a in zip(*each, strict=True)]
         return region(self.what, np.stack(unit))
 
 

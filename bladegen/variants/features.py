@@ -103,6 +103,7 @@ class Features:
         before = angles(affine.restore(plain, M, b))
         result = np.empty(sections.shape[:2])
         for i, (section, axes) in enumerate(zip(sections, to_space, strict=True)):
-            local = (section - axes[:, None, 2]) @ axes[:, :2].mT  # chords squared
-            result[i] = angles(local) - before
+            x, y, z = np.moveaxis(section - axes[:, None, 2], -1, 0).copy()
+            local = [x * a + y * b + z * c for a, b, c in axes[:, :2].transpose(1, 2, 0)[..., None]]
+            result[i] = angles(np.moveaxis(np.stack(local), 0, -1)) - before  # chords squared
         return result

@@ -10,11 +10,17 @@ for memory that nobody held for a second or two: so as much is filled and given 
 run, whatever is measured.  On a shared machine the processor's seconds say more than the clock's,
 and the program's own leave out what the system spends on memory; all three are printed.
 
-STEP files are made of the first variants, every one of them, in one process as a family's are.
+The whole command is timed with compiled functions kept, and with an empty `NUMBA_CACHE_DIR` as on a
+new machine.  Library calls are timed under as many BLAS threads as there are cores, beside one.
+
+STEP files are made of the first variants, every one of them, in one process as a family's are;
+those that miss their tolerance count.
 """
 
 import gc
 import os
+import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -22,7 +28,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from figures import figure, parser
+from figures import figure, parser, seconds
 from threadpoolctl import threadpool_limits
 
 import bladegen as bg
@@ -33,6 +39,7 @@ from bladegen.exports.products import Products
 from bladegen.families.family import BLOCK
 from bladegen.families.order import Order
 from bladegen.families.run import run
+from bladegen.shapes.learning import principal
 from bladegen.surface import fitting
 
 THREADS = 2
@@ -101,12 +108,66 @@ def main() -> None:
         figure("sections, tested", f"{case}: {kind}", "s", found)
 
     with tempfile.TemporaryDirectory() as folder:
-        files = []
-        for k in range(1 if asked.quick else 3):
-            order = Order(family, Path(folder) / f"family{k}")
-            files.append(spent(lambda order=order: run(order, jobs=THREADS))[0])
-        figure("manifest, properties and sections to files, two processes", case, "s", files)
+        rounds = 1 if asked.quick else 3
+        files: dict[str, list[tuple[float, float, float]]] = {"one": [], "two threads": []}
+        for k in range(rounds):
+            for jobs, name in enumerate(files, start=1):
+                order = Order(family, Path(folder) / f"family{k}-{jobs}")
+                files[name].append(
+                    spent(lambda order=order, jobs=jobs: run(order, jobs=jobs))  # type: ignore[misc]
+                )
+        for k, kind in enumerate(KINDS):
+            found = {name: [one[k] for one in each] for name, each in files.items()}
+            figure("manifest, properties and sections to files", f"{case}: {kind}", "s", found)
+        whole_commands(asked.blade, 16 if asked.quick else 250, rounds, Path(folder))
+        blas_threads(blade, space, 200 if asked.quick else 2000, rounds, Path(folder) / "x.step")
         write_steps(blade, space, asked.reach, steps, Path(folder) / "x.step")
+
+
+def whole_commands(blade: str, count: int, rounds: int, folder: Path) -> None:
+    """Print what the command takes, start and contact sheet included, warm and at first."""
+    taken: dict[str, list[float]] = {"warm": [], "first on a machine": []}
+    for k in range(-1, rounds):
+        for name, each in taken.items():
+            cache = folder / ("kept" if name == "warm" else f"fresh{k}")
+            target = folder / f"command{k}-{name[:1]}"
+            command = [sys.executable, "-m", "bladegen", "family", blade, "-o", str(target)]
+            command += ["--count", str(count)]
+            start = time.perf_counter()
+            environment = {**os.environ, "NUMBA_CACHE_DIR": str(cache)}
+            subprocess.run(command, env=environment, check=True, capture_output=True)
+            if k >= 0:  # the round before fills files' caches
+                each.append(time.perf_counter() - start)
+    known = dict.fromkeys(["1.0.0, warm, another run"], 12.1) if count == 250 else {}
+    figure("bladegen family, whole process", f"{blade}, {count} variants", "s", taken | known)
+
+
+def blas_threads(
+    blade: bg.Blade, space: bg.ShapeSpace, count: int, rounds: int, target: Path
+) -> None:
+    """Print library calls under as many BLAS threads as there are cores, beside one."""
+    rng = np.random.default_rng(7)
+    t = (
+        0.2
+        * np.sqrt(space.variances[: space.dimension])
+        * rng.normal(size=(count, space.dimension))
+    )
+    shapes = np.linalg.qr(space.decode(t)).Q
+
+    def limited(threads: int, work: Callable[[], object]) -> Callable[[], object]:
+        def call() -> object:
+            with threadpool_limits(threads):
+                return work()
+
+        return call
+
+    works: dict[str, Callable[[], object]] = {
+        f"principal modes of {count} shapes": lambda: principal(shapes, space.dimension),
+        f"export of {blade.name} to STEP": lambda: bg.export(blade, target),
+    }
+    for what, work in works.items():
+        calls = {f"{n} BLAS threads": limited(n, work) for n in (1, os.cpu_count() or 2)}
+        figure(what, "default threads beside one", "s", seconds(calls, rounds))
 
 
 def write_steps(
@@ -121,11 +182,16 @@ def write_steps(
     with threadpool_limits(1):  # as a family's processes do
         for variant in list(bg.family(blade, space, count=count, seed=7, reach=reach)):
             products = Products(variant, options)
-            try:
-                each = spent(lambda products=products: exporters.write(products, target))
-            except ToleranceError:
-                missed += 1
-                continue
+
+            def write(products: Products = products) -> bool:
+                try:
+                    exporters.write(products, target)
+                except ToleranceError:  # its file is kept, and its time counts
+                    return False
+                return True
+
+            each = spent(write)
+            missed += products.solid.deviation.maximum > products.options.tolerance
             clock.append(each[0])
             processor.append(each[2])
             off.append(1e3 * products.solid.deviation.maximum)

@@ -20,7 +20,7 @@ from bladegen.support.arrays import Array, ArrayLike, Indices
 
 __all__ = ["Shape"]
 
-CHUNK = 250  # spans at once, whose sections a processor's cache holds
+CHUNK = 260  # spans at once, whose sections a processor's cache holds
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +59,8 @@ class Shape:
     def at_landmarks(self, eta: Array, some: Indices) -> Array:
         """Return some of the landmarks of the sections at span fractions (k,), (k, m, 2)."""
         parts = []
-        for first in range(0, len(eta), CHUNK):
-            points, A, c = self._sized(eta[first : first + CHUNK], None)
+        for chunk in np.array_split(eta, -(-len(eta) // CHUNK) or 1):
+            points, A, c = self._sized(chunk, None)
             parts.append(affine.restore(points[:, some], A, c))
         return np.concatenate(parts)
 

@@ -5,6 +5,7 @@ aerodynamicist would take (`sanity`).  Shapes to findings, or to an error with p
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import Finding, PerturbationError
 from bladegen.shapes import affine
 from bladegen.shapes.domain import BEYOND, Domain
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, readonly
 
 __all__ = ["SOUND_SPANS", "Trial", "leaving"]
 
@@ -53,7 +54,14 @@ def leaving(shape: Shape, deformation: Deformation, *, allowed: bool) -> tuple[F
 
 
 def _spans(shape: Shape) -> Array:
-    return np.union1d(np.linspace(0.0, 1.0, SOUND_SPANS), shape.loft.eta)
+    """Return the spans (k,) at which a shape is tested, the same array for the same stations."""
+    return _united(shape.loft.eta.tobytes())
+
+
+@lru_cache(maxsize=8)
+def _united(stations_in_bytes: bytes) -> Array:
+    even = np.linspace(0.0, 1.0, SOUND_SPANS)
+    return readonly(np.union1d(even, np.frombuffer(stations_in_bytes)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,14 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
+from bladegen.airfoils.chord_lines import ChordLines
 from bladegen.airfoils.landmarks import cosine, landmark_parameters, landmarks, uniform
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.airfoils.slopes import SplineSlopes
+from bladegen.blade.affine_change import AffineChange
 from bladegen.blade.carried import Carried
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.paths import PATHS as PATHMAKERS
@@ -104,3 +106,20 @@ def test_no_spans_have_no_sections(path, edge):
         assert one.sections([]).shape == (0, 401, 3)
         assert one.profiles(np.zeros((0, 3)), np.linspace(0.0, 1.0, 9)).shape == (0, 3, 9, 2)
         assert one.relative_thickness([]).shape == (0,)
+
+
+@given(st.integers(0, 2**31), st.floats(0.6, 1.6))
+@settings(max_examples=few(8))
+@example(3, 1.0)  # a stretch gives sections near 64 % another nose
+def test_chord_lines_under_a_stretch_are_those_of_the_stretched_sections(seed, factor):
+    t = 0.02 * np.random.default_rng(seed).normal(size=SPACE.dimension)
+    baseline = bg.Blade.from_definition(bg.read("dtu10mw"))
+    change = AffineChange(thickness=factor)
+    shape = baseline.untested(SPACE, t, change, allow_extrapolation=True).shape
+    eta = np.linspace(0.1, 0.3, 101)
+    curves, thickness = shape.deformed(eta), shape.wanted_thickness(eta)
+    A, c = curves.normalising(thickness)
+    quick, measured = ChordLines.sized(curves, A, c, thickness), ChordLines.of(curves.mapped(A, c))
+    assert_allclose(quick.nose, measured.nose, atol=1e-12)
+    assert_allclose(quick.edge, measured.edge, atol=1e-12)
+    assert_array_equal(quick.alone, measured.alone)

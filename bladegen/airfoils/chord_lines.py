@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bladegen.airfoils.noses import several_peaks
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.errors import PerturbationError
 from bladegen.support.arrays import Array, Mask
@@ -19,8 +20,8 @@ __all__ = ["CONVENTIONS", "KEPT", "PAPER", "ChordLines", "Motions", "angles", "k
 
 KEPT, PAPER = "kept", "paper"
 CONVENTIONS = (KEPT, PAPER)  # what a deformation does with the chord line
-THIN = 0.4  # of the chord; no stretch gives such a section a second nose
-LITTLE = 0.2  # of a thickness; nor does a stretch by less, even of a circle
+THICK = 0.3  # of the chord; even a little stretch may give such a section a second nose
+LITTLE = 0.02  # of a thickness; no stretch by less does so to others
 
 
 def known_convention(chord_line: str) -> str:
@@ -93,7 +94,9 @@ class ChordLines:
         again = ~alone
         if thickness is not None:
             stretched = np.abs(thickness - curves.relative_thickness) > LITTLE * thickness
-            again |= stretched & (thickness > THIN)
+            looked = np.flatnonzero(~again & (stretched | (thickness > THICK)))
+            edges = curves.trailing_edge[looked].T
+            again[looked] = several_peaks(curves.planes[:, looked], edges, A[looked])
         rows = np.flatnonzero(again)
         if rows.size:
             some = cls.of(curves.take(rows).mapped(A[rows], c[rows]))

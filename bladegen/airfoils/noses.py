@@ -14,7 +14,7 @@ from bladegen.curves.cubics import Cubics, pieces
 from bladegen.curves.roots import falling
 from bladegen.support.arrays import Array, Indices, Mask
 
-__all__ = ["Noses", "farthest"]
+__all__ = ["Noses", "farthest", "several_peaks"]
 
 ITERATIONS = 8  # three are usual
 SETTLED = 1e-7  # of the way between landmarks; the step after is a thousand squares of it
@@ -60,10 +60,8 @@ def farthest(slopes: SplineSlopes, planes: Array, edge: Array) -> Noses:
     distances += y
     best, rows = np.argmax(distances, axis=1), np.arange(len(distances))
     first = _peak(slopes, planes, edge, rows, best + ahead)
-    rises = distances[:, 1:] > distances[:, :-1]
-    peaks = rises[:, :-1] & ~rises[:, 1:]
-    ends = (best == 0) | (best == distances.shape[1] - 1)
-    more = np.flatnonzero(ends | (np.count_nonzero(peaks, axis=1) != 1))
+    peaks, several = _peaks(distances, best)
+    more = np.flatnonzero(several)
     if not more.size:
         return Noses(first, first, best + ahead, best + ahead)
     inner, peaks = distances[more, 1:-1], peaks[more]
@@ -76,6 +74,26 @@ def farthest(slopes: SplineSlopes, planes: Array, edge: Array) -> Noses:
         other[rows] = 1 + ahead + np.argmax(np.where(peaks, inner, -1.0)[rivals], axis=1)
         second[rows] = _peak(slopes, planes, edge, rows, other[rows])
     return Noses(first, second, np.minimum(best + ahead, other), np.maximum(best + ahead, other))
+
+
+def several_peaks(planes: Array, edge: Array, A: Array) -> Mask:
+    """Tell which sections (2, k, n) have more than one peak of the distance under maps (k, 2, 2).
+
+    `edge` (2, k) are the trailing-edge midpoints.
+    """
+    ahead = planes.shape[2] // 4
+    away = A.mT @ (planes[..., ahead:-ahead] - edge[..., None]).swapaxes(0, 1)
+    away *= away
+    distances = away[:, 0] + away[:, 1]
+    return _peaks(distances, np.argmax(distances, axis=1))[1]
+
+
+def _peaks(distances: Array, best: Indices) -> tuple[Mask, Mask]:
+    """Return where inner landmarks (k, m - 2) are peaks, and which sections have several, (k,)."""
+    rises = distances[:, 1:] > distances[:, :-1]
+    peaks = rises[:, :-1] & ~rises[:, 1:]
+    ends = (best == 0) | (best == distances.shape[1] - 1)
+    return peaks, ends | (np.count_nonzero(peaks, axis=1) != 1)
 
 
 def _peak(

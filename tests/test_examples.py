@@ -3,6 +3,7 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = sorted((Path(__file__).parent.parent / "examples").glob("*.py"))
+LEARNING = [path for path in EXAMPLES if "import torch" in path.read_text(encoding="utf-8")]
 GALLERY = EXAMPLES[0].parent.parent / "docs" / "gallery.md"
 
 
@@ -12,7 +13,10 @@ def test_the_gallery_takes_in_every_example():
     assert wanted == {line for line in lines if line.startswith("--8")}
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+# those that need torch are run by test_learning
+@pytest.mark.parametrize(
+    "path", [path for path in EXAMPLES if path not in LEARNING], ids=lambda path: path.stem
+)
 def test_examples_run_and_write_files(command, path, tmp_path):
     done = command(script=path, folder=tmp_path)
     assert done["status"] == 0, done["err"]

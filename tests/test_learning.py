@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from test_examples import LEARNING
 
 HERE = Path(__file__).parent
 PINS = ("torch==2.13.0", "jax==0.10.2", "jaxlib==0.10.2")
@@ -24,10 +25,10 @@ def python(tmp_path_factory):
     return python
 
 
-def run(*words):
+def run(*words, folder=HERE.parent):
     done = subprocess.run(
         [str(word) for word in words],
-        cwd=HERE.parent,
+        cwd=folder,
         env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         text=True,
@@ -40,3 +41,10 @@ def run(*words):
 @pytest.mark.nightly
 def test_blades_are_differentiated_through_by_torch_and_jax(python):
     assert "100%" in run(python, "-m", "pytest", "-p", "no:cacheprovider", HERE / "learning.py")
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("path", LEARNING, ids=lambda path: path.stem)
+def test_examples_that_need_torch_run_and_write_files(python, path, tmp_path):
+    assert run(python, path, folder=tmp_path).startswith("wrote")
+    assert any(entry.stat().st_size > 1000 for entry in tmp_path.iterdir())

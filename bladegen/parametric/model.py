@@ -74,6 +74,8 @@ class ParametricBlade:
     PerturbationError
         If a parameter is unknown, or the blade cannot be differentiated.
 
+    Examples
+    --------
     >>> import bladegen as bg
     >>> blade = bg.Blade.from_definition(bg.read("iea15mw"))
     >>> model = bg.ParametricBlade(blade, bg.ShapeSpace.bundled(), ("pga", "thickness"), eta=[0.8])

@@ -149,12 +149,12 @@ def test_quantities_are_those_of_the_sections_with_exact_derivatives(name):
     assert_allclose(found["relative_thickness"], batch.relative_thickness[0], rtol=1e-12)
     assert_allclose(found["chord"], batch.chord[0], rtol=1e-12)
     over_span = [key for key in found if found[key].ndim]
-    for keys, given in ((["volume", "area"], (..., None)), (over_span, (...,))):
+    for keys, part in ((["volume", "area"], (..., None)), (over_span, (...,))):
         scale = np.array([np.abs(found.jacobian(key)).max() for key in keys])
 
-        def together(x, keys=keys, scale=scale, given=given):
+        def together(x, keys=keys, scale=scale, part=part):
             made = model.quantities(x)
-            return np.stack([made[key][given] for key in keys], axis=-1) / scale
+            return np.stack([made[key][part] for key in keys], axis=-1) / scale
 
         exact = np.stack([found.jacobian(key) for key in keys], axis=-2) / scale[:, None]
         exact = exact if exact.ndim == 3 else exact[None]

@@ -12,7 +12,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["points_gradient", "points_slopes"]
 
-REVISION = 1  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 2  # of all that is compiled with these: with another text it is compiled anew
 BLOCK = 32  # points
 
 
@@ -73,13 +73,18 @@ def points_slopes(
             rows[own + 1], rows[own + 2], rows[own + 3] = points[0], points[1], 1.0
             for j in range(3):
                 x, y = axes[0, j], axes[1, j]
-                for i in range(n):
-                    sections[b, k, i, j] = x * points[0, i] + y * points[1, i] + axes[2, j]
+                mixed(points[0], points[1], x, y, axes[2, j], sections[b, k, :, j])
                 for q in range(own + 1):
-                    for i in range(n):
-                        rows[q, i] = x * parts[q, 0, i] + y * parts[q, 1, i]
+                    mixed(parts[q, 0], parts[q, 1], x, y, 0.0, rows[q])
                 ways[own + 1 :] = space_chain[b, k, :, j]
                 summed(rows, ways, j, result[b, k])
+
+
+@compiled
+def mixed(one: Array, two: Array, a: float, b: float, c: float, result: Array) -> None:
+    """Fill an array (n,) with ``a one + b two + c``."""
+    for i in range(len(result)):
+        result[i] = a * one[i] + b * two[i] + c
 
 
 @compiled
@@ -89,18 +94,19 @@ def summed(rows: Array, ways: Array, j: int, result: Array) -> None:
     Block by block of points, so that what is written lies in the processor's nearest cache.
     """
     count, n = rows.shape
-    block = np.empty(BLOCK)
+    p = ways.shape[1]
+    block = np.empty((BLOCK, p))
     for first in range(0, n, BLOCK):
         length = min(BLOCK, n - first)
-        for g in range(ways.shape[1]):
-            block[:] = 0.0
-            for q in range(count):
-                way = ways[q, g]
+        block[:, :] = 0.0
+        for q in range(count):
+            row = rows[q, first : first + length]
+            for g in range(p):
+                way, column = ways[q, g], block[:length, g]
                 if way != 0.0:
-                    for i in range(length):
-                        block[i] += way * rows[q, first + i]
-            for i in range(length):
-                result[first + i, j, g] = block[i]
+                    for i in range(len(row)):
+                        column[i] += way * row[i]
+        result[first : first + length, j] = block[:length]
 
 
 @compiled

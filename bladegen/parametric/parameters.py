@@ -135,7 +135,7 @@ class Parameters:
         weights = clamped(grid, np.eye(len(grid)))(np.clip(self.eta, grid[0], grid[-1]))
         return np.ascontiguousarray(weights.T), places
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Their names, (p,): "pga[0]", "thickness", or with a place, "chord at 0.3"."""
         return tuple(column.name for column in self._columns)

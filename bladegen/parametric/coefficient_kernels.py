@@ -18,7 +18,7 @@ from bladegen.variants.sizes import sizing
 
 __all__ = ["linearised", "lines_slopes"]
 
-REVISION = 1  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 4  # of all that is compiled with these: with another text it is compiled anew
 TERMS = 20  # of the series of cos S and sin S / S; principal angles below 2 rad need 14
 
 
@@ -70,7 +70,7 @@ def linearised(
     points, moved = np.empty((2, len(u))), np.empty((2, len(u)))
     now, work = np.empty((features, 2)), np.empty(len(u))
     rows, spare = np.empty((4, features, 2)), np.empty((2, 4, features, 2))
-    raw = np.zeros((modes, features, 2))
+    raw, still = np.zeros((modes, features, 2)), np.zeros(4)
     for k in range(spans):
         for b in range(count):
             c = coefficients[k, b]
@@ -88,7 +88,7 @@ def linearised(
             motion = onto(line, there) if kept else motion_of(there)
             carried(now, motion, result[k, b])
             for q in range(modes + 1):
-                moving = standing_slopes[k, b] if q == modes else np.zeros(4)
+                moving = standing_slopes[k, b] if q == modes else still
                 if kept:
                     follow(values[k], result[k, b], rows, line, motion, there, moving, change[q])
                 else:
@@ -171,7 +171,8 @@ def series(squares: Array, change: Array, odd: float) -> tuple[Array, Array]:
 
     Horner's rule on the sum of (-S^2)^m / (2 m + odd)!.
     """
-    value, slope = np.eye(2), np.zeros((2, 2))
+    value, slope = np.zeros((2, 2)), np.zeros((2, 2))
+    value[0, 0] = value[1, 1] = 1.0
     following = np.empty((2, 2))
     for m in range(TERMS, 0, -1):
         share = 1.0 / ((2.0 * m + odd) * (2.0 * m + odd - 1.0))
@@ -184,7 +185,9 @@ def series(squares: Array, change: Array, odd: float) -> tuple[Array, Array]:
             y = squares[1, 0] * value[0, b] + squares[1, 1] * value[1, b]
             value[0, b] = (1.0 if b == 0 else 0.0) - share * x
             value[1, b] = (1.0 if b == 1 else 0.0) - share * y
-        slope[:, :] = -share * following
+        for a in range(2):
+            for b in range(2):
+                slope[a, b] = -share * following[a, b]
     return value, slope
 
 
@@ -212,7 +215,8 @@ def lines_slopes(
             sized = Section(u, slopes[k], now, points)
             line = gradients(sized, values[k], work, rows, spare)
             sized_slopes(values[k], now, rows, line, total, raw, change)
-            result[k, b] = 0.0
+            for j in range(4):
+                result[k, b, j] = 0.0
             for f in range(features):
                 end = 0.5 * (values[k, f, 0] + values[k, f, -1])
                 for j in range(2):

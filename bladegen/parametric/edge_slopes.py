@@ -26,9 +26,11 @@ def finished(points: Array, kind: int, width: float, slopes: Array) -> None:
     x, y = points[0], points[1]
     gap = y[0] - y[-1]
     missing = 0.25 * (width * width - gap * gap)
+    for i in range(len(slopes)):
+        slopes[i, 0] = 1.0
+        for j in range(1, SLOPES):
+            slopes[i, j] = 0.0
     if kind == GIVEN or (kind == MINIMUM and not missing > 0.0):
-        slopes[:, :] = 0.0
-        slopes[:, 0] = 1.0
         return
     rear = 0.5 * (x[0] + x[-1])
     for i in range(len(x) // 2):
@@ -37,8 +39,6 @@ def finished(points: Array, kind: int, width: float, slopes: Array) -> None:
         weight = f * f * f * (10.0 - 15.0 * f + 6.0 * f * f)
         rate = 30.0 * f * f * (1.0 - f) * (1.0 - f) / (BEHIND - AHEAD)
         s = slopes[i]
-        s[:] = 0.0
-        s[0] = 1.0
         level = 0.5 * (y[i] + y[-1 - i])
         if kind == MINIMUM:
             if not weight > 0.0:

@@ -12,7 +12,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["points_gradient", "points_slopes"]
 
-REVISION = 2  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 4  # of all that is compiled with these: with another text it is compiled anew
 BLOCK = 32  # points
 
 
@@ -65,18 +65,28 @@ def points_slopes(
             for q in range(own):
                 combine(values[k], changes[k, b, q], parts[q])
                 carried_on(rules, kind, gap, width[b, k], 0.0, parts[q], half)
-            parts[own] = 0.0
+            for i in range(n):
+                parts[own, 0, i] = parts[own, 1, i] = 0.0
             carried_on(rules, kind, gap, width[b, k], 1.0, parts[own], half)
             axes = to_space[b, k]
-            ways[:own] = chain[b, k]
-            ways[own] = width_chain[b, k]
-            rows[own + 1], rows[own + 2], rows[own + 3] = points[0], points[1], 1.0
+            for i in range(n):
+                rows[own + 1, i], rows[own + 2, i], rows[own + 3, i] = (
+                    points[0, i],
+                    points[1, i],
+                    1.0,
+                )
+            for g in range(p):
+                for q in range(own):
+                    ways[q, g] = chain[b, k, q, g]
+                ways[own, g] = width_chain[b, k, g]
             for j in range(3):
                 x, y = axes[0, j], axes[1, j]
                 mixed(points[0], points[1], x, y, axes[2, j], sections[b, k, :, j])
                 for q in range(own + 1):
                     mixed(parts[q, 0], parts[q, 1], x, y, 0.0, rows[q])
-                ways[own + 1 :] = space_chain[b, k, :, j]
+                for g in range(p):
+                    for q in range(3):
+                        ways[own + 1 + q, g] = space_chain[b, k, q, j, g]
                 summed(rows, ways, j, result[b, k])
 
 
@@ -98,15 +108,19 @@ def summed(rows: Array, ways: Array, j: int, result: Array) -> None:
     block = np.empty((BLOCK, p))
     for first in range(0, n, BLOCK):
         length = min(BLOCK, n - first)
-        block[:, :] = 0.0
-        for q in range(count):
-            row = rows[q, first : first + length]
-            for g in range(p):
-                way, column = ways[q, g], block[:length, g]
+        for g in range(p):
+            column = block[:length, g]
+            for i in range(len(column)):
+                column[i] = 0.0
+            for q in range(count):
+                way, row = ways[q, g], rows[q, first : first + length]
                 if way != 0.0:
                     for i in range(len(row)):
                         column[i] += way * row[i]
-        result[first : first + length, j] = block[:length]
+        for i in range(length):
+            there, here = result[first + i, j], block[i]
+            for g in range(len(there)):
+                there[g] = here[g]
 
 
 @compiled
@@ -139,10 +153,12 @@ def points_gradient(
                 half[i] = 0.5 * (points[1, i] - points[1, -1 - i])
             finished(points, kind, width[b, k], rules)
             axes, there = to_space[b, k], in_space[b, k]
-            there[:, :] = 0.0
-            g[:, :] = 0.0
+            for i in range(3):
+                for j in range(3):
+                    there[i, j] = 0.0
             for i in range(n):
                 x, y = points[0, i], points[1, i]
+                g[0, i] = g[1, i] = 0.0
                 for j in range(3):
                     one = gradient[b, k, i, j]
                     there[0, j] += x * one
@@ -151,7 +167,8 @@ def points_gradient(
                     g[0, i] += axes[0, j] * one
                     g[1, i] += axes[1, j] * one
             in_width[b, k] = back(rules, kind, gap, width[b, k], g, half)
-            own[b, k] = 0.0
+            for q in range(directions):
+                own[b, k, q] = 0.0
             for f in range(features):
                 x = y = 0.0
                 for i in range(n):

@@ -163,7 +163,8 @@ def sized_slopes(
         for f in range(len(c)):
             slopes[q, f, 0] = raw[q, f, 0] * a + raw[q, f, 1] * d
             slopes[q, f, 1] = raw[q, f, 0] * b + raw[q, f, 1] * e
-    slopes[-1] = 0.0
+    for f in range(len(c)):
+        slopes[-1, f, 0] = slopes[-1, f, 1] = 0.0
     shares = solved(values, c, rows, (ax, ay, length), moves, slopes)
     # the map's shift is normal to the line: -lift / (1 + lift) times the carried edge's height
     above = -ay * kx + ax * ky
@@ -222,8 +223,9 @@ def solved(
     system, right = np.zeros((3, 3)), np.zeros((count, 3))
     own = np.empty((3, 2))
     for f in range(len(c)):
-        own[0] = turning(rows, values, f, line)
-        own[1], own[2] = rows[REACH, f], rows[THICKNESS, f]
+        own[0, 0], own[0, 1] = turning(rows, values, f, line)
+        for i in range(2):
+            own[1, i], own[2, i] = rows[REACH, f, i], rows[THICKNESS, f, i]
         for m in range(3):
             x = c[f, 0] * moves[m, 0, 0] + c[f, 1] * moves[m, 1, 0]
             y = c[f, 0] * moves[m, 0, 1] + c[f, 1] * moves[m, 1, 1]

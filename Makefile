@@ -1,7 +1,7 @@
 .DEFAULT_GOAL := help
 LOCK = --quiet --universal --python-version 3.11 --no-header --no-emit-index-url --no-annotate
 # What reads, perturbs and writes blades without pictures, families and compiled loops: locks/core.txt
-CORE = annotated-doc|annotated-types|cadquery-ocp|et-xmlfile|filelock|h5py|lxml|markdown-it-py|mdurl|networkx|numpy|openpyxl|pillow|pydantic|pydantic-core|pygments|pyyaml|rich|ruamel-yaml|scipy|shellingham|threadpoolctl|trimesh|typer|typing-extensions|typing-inspection
+CORE = annotated-doc|cadquery-ocp|et-xmlfile|filelock|h5py|lxml|markdown-it-py|mdurl|networkx|numpy|openpyxl|pillow|pygments|pyyaml|rich|ruamel-yaml|scipy|shellingham|threadpoolctl|trimesh|typer
 .PHONY: help demo lint test test-all docs bench mutants lock licences sbom audit release clean
 
 help: ## show this

@@ -51,7 +51,7 @@ class Quantities(Mapping[str, Array]):
         if name in WHOLE:
             return self._whole[WHOLE.index(name)].reshape(self.lead)
         if name in SECTION:
-            value = self._measured[0][..., SECTION.index(name)]
+            value = self._measures[..., SECTION.index(name)]
         else:
             chain = self.linear.chain
             chord, twist, _ = chain.planform
@@ -65,7 +65,7 @@ class Quantities(Mapping[str, Array]):
             slopes = polygons.volume_and_area_slopes(self._sections)[WHOLE.index(name)]
             return self.linear.vjp(slopes).reshape(*self.lead, -1)
         if name in SECTION:
-            slopes = self._measured[1][..., SECTION.index(name), :]
+            slopes = self._measure_slopes[..., SECTION.index(name), :]
         else:
             chain = self.linear.chain
             every = chain.chord_slopes, chain.twist_slopes, chain.thickness_slopes
@@ -81,9 +81,19 @@ class Quantities(Mapping[str, Array]):
         return polygons.volume_and_area(self._sections)
 
     @cached_property
-    def _measured(self) -> tuple[Array, Array]:
-        """The measures (b, k, 7) of sections, and their derivatives (b, k, 7, p)."""
-        points, changes = self.linear.flat()
-        measures = polygons.measure(points)
-        slopes = np.einsum("bkmni,bknip->bkmp", polygons.measure_slopes(points), changes)
-        return measures, slopes
+    def _flat(self) -> tuple[Array, Array]:
+        return self.linear.flat()
+
+    @cached_property
+    def _measures(self) -> Array:
+        """The measures (b, k, 7) of sections."""
+        return polygons.measure(self._flat[0])
+
+    @cached_property
+    def _measure_slopes(self) -> Array:
+        """The derivatives (b, k, 7, p) of the measures of sections."""
+        points, changes = self._flat
+        slopes = polygons.measure_slopes(points)
+        return slopes.reshape(*slopes.shape[:3], -1) @ changes.reshape(
+            *changes.shape[:2], -1, changes.shape[-1]
+        )

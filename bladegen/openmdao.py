@@ -58,7 +58,6 @@ class BladeComponent(ExplicitComponent):  # type: ignore[misc]
         self.blade, self.made = model, Outputs(model, outputs)
         self.places = _places(model) if split else {WHOLE: np.arange(len(model.names))}
         self.matrix_free = SECTIONS in self.made.names if matrix_free is None else matrix_free
-        self._last: tuple[Array, Evaluated] | None = None
 
     def setup(self) -> None:
         """Declare inputs, outputs and partials."""
@@ -80,9 +79,7 @@ class BladeComponent(ExplicitComponent):  # type: ignore[misc]
                     "check_partials(method='fd')"
                 )
             x[place] = given
-        if self._last is None or not np.array_equal(self._last[0], x):
-            self._last = x, self.made.at(x)
-        return self._last[1]
+        return self.made.at(x)
 
     def compute(self, inputs: Mapping[str, Array], outputs: dict[str, Array], *_: Any) -> None:
         """Set the outputs."""

@@ -4,8 +4,9 @@ An output is "sections" [m] or one of `Quantities`.  Products with derivatives o
 along the chain, so that no derivatives (k, n, 3, p) are kept.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -81,8 +82,19 @@ class Outputs:
         return f"<Outputs {', '.join(self.names)} of {self.model!r}>"
 
     def at(self, x: Array) -> "Evaluated":
-        """Return the outputs at vectors x (..., p)."""
-        return Evaluated(self.model.quantities(x), self.names)
+        """Return the outputs at vectors x (..., p); the last ones are remembered.
+
+        A gradient is asked for where values have just been.
+        """
+        x = np.ascontiguousarray(x, dtype=np.float64)
+        return self._remembered(x.tobytes(), x.shape)
+
+    @cached_property
+    def _remembered(self) -> Callable[[bytes, tuple[int, ...]], "Evaluated"]:
+        def made(data: bytes, shape: tuple[int, ...]) -> Evaluated:
+            return Evaluated(self.model.quantities(np.frombuffer(data).reshape(shape)), self.names)
+
+        return lru_cache(1)(made)
 
     @cached_property
     def _baseline(self) -> "Evaluated":

@@ -20,9 +20,9 @@ from figures import asked, figure
 
 import bladegen as bg
 from bladegen.airfoils import landmarks
-from bladegen.blade.affine_change import AffineChange
-from bladegen.blade.paths import PATHS
-from bladegen.blade.window import Window
+from bladegen.blade.changes.affine_change import AffineChange
+from bladegen.blade.changes.window import Window
+from bladegen.blade.lofting.paths import PATHS
 from bladegen.variants.batch import SectionBatch
 
 SPANS = 100

@@ -14,7 +14,7 @@ from figures import asked, figure
 from scipy.interpolate import PchipInterpolator, interp1d
 
 import bladegen as bg
-from bladegen.blade.paths import PATHS, Parameter, SectionSpline
+from bladegen.blade.lofting.paths import PATHS, Parameter, SectionSpline
 from bladegen.measures.smoothness import creases
 from bladegen.shapes import affine
 

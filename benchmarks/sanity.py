@@ -11,7 +11,7 @@ from figures import asked, figure
 
 import bladegen as bg
 from bladegen.airfoils.chord_lines import ChordLines
-from bladegen.blade.deformation import AffineChange
+from bladegen.blade.changes.deformation import AffineChange
 from bladegen.errors import PerturbationError
 
 SPANS = np.linspace(0.2, 0.98, 79)

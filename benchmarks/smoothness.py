@@ -15,7 +15,7 @@ from pathlib import Path
 from figures import figure, parser
 
 import bladegen as bg
-from bladegen.blade.paths import PATHS
+from bladegen.blade.lofting.paths import PATHS
 from bladegen.cad import exchange, solids
 from bladegen.measures.inflections import inflections
 from bladegen.measures.smoothness import edge_bulges

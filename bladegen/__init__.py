@@ -19,7 +19,7 @@ from bladegen.version import __version__
 
 if TYPE_CHECKING:
     from bladegen.blade.blade import Blade
-    from bladegen.blade.deformation import Coordinates, Window
+    from bladegen.blade.changes.deformation import Coordinates, Window
     from bladegen.definition.blade_definition import (
         Airfoil,
         BladeDefinition,
@@ -45,7 +45,7 @@ _HOME = {
     "Blade": "blade.blade",
     "BladeDefinition": "definition.blade_definition",
     "BladegenError": "errors",
-    "Coordinates": "blade.deformation",
+    "Coordinates": "blade.changes.deformation",
     "Distribution": "definition.distribution",
     "Family": "families.family",
     "Finding": "errors",
@@ -54,7 +54,7 @@ _HOME = {
     "Rotor": "definition.blade_definition",
     "ShapeSpace": "shapes.shape_space",
     "Station": "definition.blade_definition",
-    "Window": "blade.deformation",
+    "Window": "blade.changes.deformation",
     "bundled": "formats.bundled",
     "export": "exports.exporters",
     "family": "families.family",

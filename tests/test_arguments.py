@@ -8,7 +8,7 @@ import pytest
 
 import bladegen as bg
 from bladegen.blade import edges, planform
-from bladegen.blade.deformation import AffineChange
+from bladegen.blade.changes.deformation import AffineChange
 from bladegen.errors import BladegenError, ExportError, PerturbationError
 from bladegen.exports.options import Options
 from bladegen.shapes import affine, grassmann

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen.blade.deformation import AffineChange, Window
+from bladegen.blade.changes.deformation import AffineChange, Window
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.soundness import Trial
 from bladegen.curves import polygons

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import Akima1DInterpolator
 
 from bladegen.airfoils.landmarks import landmarks
-from bladegen.blade.paths import (
+from bladegen.blade.lofting.paths import (
     NOISE,
     GeodesicPath,
     Parameter,

@@ -13,10 +13,10 @@ from bladegen.airfoils.chord_lines import ChordLines
 from bladegen.airfoils.landmarks import cosine, landmark_parameters, landmarks, uniform
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.airfoils.slopes import SplineSlopes
-from bladegen.blade.affine_change import AffineChange
-from bladegen.blade.carried import Carried
+from bladegen.blade.changes.affine_change import AffineChange
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
-from bladegen.blade.paths import PATHS as PATHMAKERS
+from bladegen.blade.lofting.carried import Carried
+from bladegen.blade.lofting.paths import PATHS as PATHMAKERS
 from bladegen.curves.cubics import Cubics
 from bladegen.shapes import affine, grassmann
 from strategies import airfoils, definitions, few

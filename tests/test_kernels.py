@@ -17,7 +17,7 @@ import bladegen as bg
 from bladegen.airfoils import characteristics
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.blade.deformation import AffineChange, Window
+from bladegen.blade.changes.deformation import AffineChange, Window
 from bladegen.blade.edges import MinimumThickness
 from bladegen.curves import plane_maps, polygons
 from bladegen.curves.crossing import crossing_sections

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen.blade.deformation import AffineChange, Coordinates
+from bladegen.blade.changes.deformation import AffineChange, Coordinates
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.planform import normal_to_z
 from bladegen.curves import polygons

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.blade.deformation import AffineChange
+from bladegen.blade.changes.deformation import AffineChange
 from bladegen.blade.soundness import SOUND_SPANS
 from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import PerturbationError

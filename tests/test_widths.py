@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.blade.edge_widths import Wedges
+from bladegen.blade.lofting.edge_widths import Wedges
 from bladegen.errors import GeometryError
 from bladegen.measures.smoothness import edge_bulges, edge_widths
 from bladegen.shapes import grassmann

@@ -16,10 +16,10 @@ from bladegen.airfoils.chord_lines import KEPT
 from bladegen.airfoils.fairing import TOLERANCE
 from bladegen.airfoils.landmarks import Spacing, clustered
 from bladegen.blade import outputs, parts
-from bladegen.blade.deformation import AffineChange, Coordinates, Window
+from bladegen.blade.changes.deformation import AffineChange, Coordinates, Window
 from bladegen.blade.edges import MINIMUM_EDGE, TrailingEdge
-from bladegen.blade.loft import lofted
-from bladegen.blade.paths import PATHS
+from bladegen.blade.lofting.loft import lofted
+from bladegen.blade.lofting.paths import PATHS
 from bladegen.blade.perturbation import Perturbation, Where, change_of, together, told
 from bladegen.blade.planform import Planform, SectionPlanes, normal_to_axis
 from bladegen.blade.shape import Shape

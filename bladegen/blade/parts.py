@@ -6,10 +6,10 @@ from typing import Any
 
 from bladegen.airfoils.landmarks import Contour
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.blade.deformation import Deformation, Thickening
-from bladegen.blade.edge_widths import Joining
-from bladegen.blade.loft import Loft
-from bladegen.blade.paths import Parameter, Path, PathMaker
+from bladegen.blade.changes.deformation import Deformation, Thickening
+from bladegen.blade.lofting.edge_widths import Joining
+from bladegen.blade.lofting.loft import Loft
+from bladegen.blade.lofting.paths import Parameter, Path, PathMaker
 from bladegen.blade.planform import Planform, SectionPlanes
 from bladegen.blade.shape import Shape
 from bladegen.definition.blade_definition import BladeDefinition

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 from bladegen.airfoils.chord_lines import KEPT
-from bladegen.blade.deformation import (
+from bladegen.blade.changes.deformation import (
     RANGES,
     AffineChange,
     Coordinates,

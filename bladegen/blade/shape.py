@@ -11,9 +11,9 @@ import numpy as np
 
 from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
 from bladegen.airfoils.section_curves import SectionCurves
-from bladegen.blade.deformation import Deformation, Thickening
-from bladegen.blade.joined import JoinedSections
-from bladegen.blade.loft import Loft
+from bladegen.blade.changes.deformation import Deformation, Thickening
+from bladegen.blade.lofting.joined import JoinedSections
+from bladegen.blade.lofting.loft import Loft
 from bladegen.blade.spans import landmarks_at, span_fractions
 from bladegen.shapes import affine
 from bladegen.support.arrays import Array, ArrayLike, Indices

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.airfoils.chord_lines import ChordLines
-from bladegen.blade.deformation import Deformation
+from bladegen.blade.changes.deformation import Deformation
 from bladegen.blade.sanity import ODD, Oddities, characteristics_along, oddities
 from bladegen.blade.shape import Shape
 from bladegen.curves.crossing import crossing_sections

@@ -18,7 +18,7 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
-from bladegen.blade.paths import PATHS
+from bladegen.blade.lofting.paths import PATHS
 from bladegen.blade.planform import PLANES
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.support.files import digest_of

@@ -15,7 +15,7 @@ import numpy as np
 
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.blade import Blade
-from bladegen.blade.deformation import RANGES, Window
+from bladegen.blade.changes.deformation import RANGES, Window
 from bladegen.errors import FamilyError, PlaceError
 from bladegen.families import members
 from bladegen.families.block import Block

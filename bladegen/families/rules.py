@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.blade.deformation import AffineChange
+from bladegen.blade.changes.deformation import AffineChange
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.variants.batch import SectionBatch
 from bladegen.variants.factors import Factors

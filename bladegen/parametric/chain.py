@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.blade.affine_change import WHOLE, AffineChange, faded
+from bladegen.blade.changes.affine_change import WHOLE, AffineChange, faded
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import PerturbationError
 from bladegen.parametric.parameters import AFFINE, Parameters

@@ -21,9 +21,9 @@ import numpy as np
 
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.blade import Blade
+from bladegen.blade.changes.window import Window
 from bladegen.blade.perturbation import Where
 from bladegen.blade.spans import landmarks_at, span_fractions
-from bladegen.blade.window import Window
 from bladegen.errors import PerturbationError
 from bladegen.parametric import outputs
 from bladegen.parametric.chain import change_of

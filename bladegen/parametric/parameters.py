@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.blade.affine_change import RANGES, WHOLE, AffineChange
-from bladegen.blade.deformation import Coordinates
+from bladegen.blade.changes.affine_change import RANGES, WHOLE, AffineChange
+from bladegen.blade.changes.deformation import Coordinates
 from bladegen.definition.distribution import Distribution
 from bladegen.errors import PerturbationError
 from bladegen.shapes.shape_space import ShapeSpace

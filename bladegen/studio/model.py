@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.blade.deformation import AffineChange, Window
+from bladegen.blade.changes.deformation import AffineChange, Window
 from bladegen.blade.sanity import KINDS
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.controls import AFFINE

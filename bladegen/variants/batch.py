@@ -13,7 +13,7 @@ import numpy as np
 from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.blade.blade import Blade
-from bladegen.blade.deformation import AffineChange, Window, faded
+from bladegen.blade.changes.deformation import AffineChange, Window, faded
 from bladegen.blade.edges import AsGiven, MinimumThickness, TrailingEdge
 from bladegen.blade.sanity import CHARACTERISTICS, Oddities, characteristics, oddities
 from bladegen.curves import polygons

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bladegen.blade.deformation import RANGES, in_units
+from bladegen.blade.changes.deformation import RANGES, in_units
 from bladegen.errors import DesignError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import numbers, one_of, whole

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.blade.deformation import RANGES, AffineChange, in_units
+from bladegen.blade.changes.deformation import RANGES, AffineChange, in_units
 from bladegen.errors import DesignError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import amount, instance, numbers, shown, suggestion

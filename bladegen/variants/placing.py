@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.blade.deformation import AffineChange, Window, faded
+from bladegen.blade.changes.deformation import AffineChange, Window, faded
 from bladegen.blade.planform import placement
 from bladegen.support.arrays import Array, ArrayLike
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.blade.deformation import RANGES
+from bladegen.blade.changes.deformation import RANGES
 from bladegen.errors import ExportError, RenderError, visible
 from bladegen.plots import style
 from bladegen.shapes.shape_space import ShapeSpace

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bladegen.blade.deformation import Coordinates, Window
+from bladegen.blade.changes.deformation import Coordinates, Window
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
 from bladegen.errors import BladegenError, DesignError, FileError
 from bladegen.formats.common.text_file import decimal_of, delimiter_of, text_of

@@ -9,9 +9,9 @@ from functools import cached_property
 
 from bladegen.airfoils.chord_lines import ChordLines
 from bladegen.airfoils.section_curves import SectionCurves
-from bladegen.blade.before import Before
-from bladegen.blade.carried import Carried
-from bladegen.blade.edge_widths import Wedges
+from bladegen.blade.lofting.before import Before
+from bladegen.blade.lofting.carried import Carried
+from bladegen.blade.lofting.edge_widths import Wedges
 from bladegen.shapes import affine
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.blade.window import Window
+from bladegen.blade.changes.window import Window
 from bladegen.definition.blade_definition import (
     BladeDefinition,
     Distribution,

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from bladegen.blade.combined import Combined
+from bladegen.blade.lofting.combined import Combined
 from bladegen.definition.blade_definition import Distribution, Interpolant, pchip
 from bladegen.shapes import affine, grassmann
 from bladegen.support.arrays import Array, Indices, Mask

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.airfoils.chord_lines import KEPT, known_convention
-from bladegen.blade.affine_change import RANGES, AffineChange, Thickening, faded, in_units
-from bladegen.blade.window import Window
+from bladegen.blade.changes.affine_change import RANGES, AffineChange, Thickening, faded, in_units
+from bladegen.blade.changes.window import Window
 from bladegen.definition.blade_definition import Distribution, Interpolant, pchip
 from bladegen.errors import PerturbationError
 from bladegen.shapes import grassmann

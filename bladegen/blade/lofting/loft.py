@@ -12,9 +12,9 @@ import numpy as np
 
 from bladegen.airfoils.landmarks import Contour, Spacing, contour, landmark_parameters
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.blade.edge_widths import EdgeWidths, Joining
-from bladegen.blade.joined import JoinedSections
-from bladegen.blade.paths import (
+from bladegen.blade.lofting.edge_widths import EdgeWidths, Joining
+from bladegen.blade.lofting.joined import JoinedSections
+from bladegen.blade.lofting.paths import (
     PATHS,
     GeodesicPath,
     Parameter,

@@ -3,7 +3,9 @@
 Not collected by itself: both libraries lie in an environment of their own.
 """
 
+import re
 from functools import cache
+from pathlib import Path
 
 import jax
 import numpy as np
@@ -108,3 +110,12 @@ def test_what_is_not_there_is_said():
             adapter(model(), ("volum",))
     with jax.enable_x64(False), pytest.raises(PerturbationError, match="double precision is off"):
         bladegen.jax.BladeFunction(model())(vectors())
+
+
+def test_what_the_page_on_optimising_shows_runs():
+    page = Path(bg.__file__).parent.parent / "docs" / "optimise.md"
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    names: dict = {}
+    exec("\n".join(blocks), names)  # one after the other, as they are read
+    assert len(names["x"].grad) == len(names["model"].names)
+    assert names["slope"](names["model"].baseline).shape == (len(names["model"].names),)

@@ -14,7 +14,7 @@ import numpy as np
 
 from bladegen.curves.plane_maps import Numbers
 from bladegen.support.arrays import Array
-from bladegen.support.compiled import compiled
+from bladegen.support.compiled import ONE, ZERO, compiled
 
 __all__ = ["characterise", "characteristics_of"]
 
@@ -43,13 +43,13 @@ def characterise(
         p, q = points[0, i] - line[0], points[1, i] - line[1]
         x[i] = p * ax + q * ay
         y[i] = (q * ax - p * ay) * flat
-    nose = 0
+    nose = ZERO
     for i in range(len(x)):
         nose = i if x[i] < x[nose] else nose
     turning(x, y, nose, result)
     count = len(MEAN_LINE)
-    heights(x, y, nose, -1, work[:count])
-    heights(x, y, nose, 1, work[count:])
+    heights(x, y, nose, -ONE, work[:count])
+    heights(x, y, nose, ONE, work[count:])
     height = work[0] - work[count]
     result[1] = height * height / (8.0 * NEAR)
     result[4] = 0.0

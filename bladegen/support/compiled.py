@@ -17,8 +17,11 @@ from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Any
 
-__all__ = ["NUMBA", "compiled"]
+import numpy as np
 
+__all__ = ["NUMBA", "ONE", "ZERO", "compiled"]
+
+ZERO, ONE = np.int64(0), np.int64(1)  # to pass on: for a plain 1 a function is compiled once more
 NUMBA = find_spec("numba") is not None
 
 

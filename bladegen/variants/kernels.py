@@ -20,13 +20,13 @@ from bladegen.blade.edges import WINDOW
 from bladegen.curves.plane_maps import Numbers, carried, carry, combine, motion_of, onto
 from bladegen.curves.separation import ANGLES, APART, FLAT
 from bladegen.support.arrays import Array, Indices
-from bladegen.support.compiled import compiled
+from bladegen.support.compiled import ONE, ZERO, compiled
 from bladegen.variants.section_measures import Section
 from bladegen.variants.sizes import chord_line, sizing
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 8  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 9  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -143,15 +143,15 @@ def compared(points: Array, seen: Array) -> int:
         for i in range(n):
             x[i] = points[0, i] * c + points[1, i] * s
             y[i] = points[1, i] * c - points[0, i] * s
-        right, left, turns = 0, 0, 0
+        right, left, turns = ZERO, ZERO, 0
         for i in range(n):
-            before, after = x[i] - x[i - 1], x[following(i, 1, n)] - x[i]
+            before, after = x[i] - x[i - 1], x[following(i, ONE, n)] - x[i]
             turns += not before * after > 0.0  # a side that stands upright is left open
             right = i if x[i] > x[right] else right
             left = i if x[i] < x[left] else left
         if turns == 2:
-            back = gaps(x, y, right, left, 1)
-            forth = gaps(x, y, right, left, -1)
+            back = gaps(x, y, right, left, ONE)
+            forth = gaps(x, y, right, left, -ONE)
             least, most = min(back[0], -forth[1]), max(back[1], -forth[0])
             if least >= APART:
                 return SOUND

@@ -44,17 +44,17 @@ def test_the_first_block_says_what_the_others_take(tmp_path):
     told = []
     run(order(tmp_path / "family", 24, "stl"), foretold=told.append)
     (forecast,) = told
-    assert forecast.variants == 16
+    assert forecast.variants == 22
     made = sum(file.stat().st_size for file in (tmp_path / "family" / "blades").glob("*.stl"))
-    assert made * 16 / 24 < forecast.needed < made * 16 / 24 + 16 * (BYTES + 20_000)
+    assert made * 22 / 24 < forecast.needed < made * 22 / 24 + 22 * (BYTES + 20_000)
     assert forecast.seconds > 0
-    assert str(forecast).startswith("16 variants: about ")
+    assert str(forecast).startswith("22 variants: about ")
 
 
 def test_files_that_do_not_fit_leave_nothing_behind(tmp_path, monkeypatch):
     with_free(monkeypatch, 30 * BYTES)  # room for the sections, not for the files
     target = tmp_path / "family"
-    with pytest.raises(FamilyError, match=r"16 variants take about .*--count"):
+    with pytest.raises(FamilyError, match=r"22 variants take about .*--count"):
         run(order(target, 24, "stl"))
     assert list(target.iterdir()) == []
     monkeypatch.undo()

@@ -21,7 +21,9 @@ import numpy as np
 
 __all__ = ["NUMBA", "ONE", "ZERO", "compiled"]
 
-ZERO, ONE = np.int64(0), np.int64(1)  # to pass on: for a plain 1 a function is compiled once more
+# to pass on: for a plain 1 a function is compiled once more
+ZERO: Any = np.int64(0)
+ONE: Any = np.int64(1)
 NUMBA = find_spec("numba") is not None
 
 

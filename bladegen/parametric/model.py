@@ -10,6 +10,8 @@ They exist but at few places, where one side's derivative is given:
   share in it, or passes the other as the farthest from the trailing edge
   (`airfoils.section_curves`);
 - where a trailing edge reaches its least width, or 2 mm reach 1 % of the chord (`blade.edges`).
+
+Where either of two noses, or three, may lead, sections themselves jump, and so do derivatives.
 """
 
 from collections.abc import Mapping, Sequence

@@ -5,11 +5,13 @@ import subprocess
 import sys
 import time
 
+import filelock
 import pytest
 from processes import gone_within, running
 
 from bladegen.cli import commands
-from bladegen.support.stopping import Stopped, stopped_by_signals
+from bladegen.support.files import alone
+from bladegen.support.stopping import Stopped, held_back, stopped_by_signals
 
 MAIN = [sys.executable, "-c", "from bladegen.cli.commands import main; main()"]
 WORKER = """
@@ -75,6 +77,33 @@ def test_ignored_signals_stay_ignored_and_a_second_one_is_the_systems():
             assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+def test_a_signal_that_comes_while_files_are_locked_leaves_no_lock(tmp_path, monkeypatch):
+    acquire = filelock.FileLock.acquire
+
+    def late(lock, *args, **how):
+        taken = acquire(lock, *args, **how)
+        signal.raise_signal(signal.SIGTERM)  # the file is there, and nobody knows yet
+        return taken
+
+    monkeypatch.setattr(filelock.FileLock, "acquire", late)
+    with stopped_by_signals(), pytest.raises(Stopped, match="terminated"), alone(tmp_path, "blade"):
+        pytest.fail("went on")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_signal_that_is_held_back_comes_at_the_end():
+    done = []
+
+    def interrupted():
+        with held_back():
+            signal.raise_signal(signal.SIGTERM)
+            done.append(1)
+
+    with stopped_by_signals(), pytest.raises(Stopped):
+        interrupted()
+    assert done == [1]
 
 
 def test_a_build_that_is_stopped_says_so_and_leaves_nothing(tmp_path):

@@ -13,9 +13,10 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from bladegen.errors import ExportError, FileError
+from bladegen.support.stopping import held_back
 
 __all__ = [
     "alone",
@@ -81,23 +82,32 @@ def alone(path: Path, stem: str) -> Iterator[None]:
 
     file = path / f".{stem}.lock"
     lock = FileLock(file, timeout=RETRY, poll_interval=0.1 * RETRY)
+    ours = False
     try:
-        lock.acquire()
-    except Timeout:
-        raise ExportError(f"{path}: another run is writing {stem} there") from None
-    except OSError as error:
-        if error.errno != errno.ENOLCK:  # a file system without locks
-            raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
-    try:
+        with held_back():  # or a file would stay that was made and not yet known to be held
+            try:
+                lock.acquire()
+            except Timeout:
+                raise ExportError(f"{path}: another run is writing {stem} there") from None
+            except OSError as error:
+                if error.errno != errno.ENOLCK:  # a file system without locks
+                    raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
+            ours = True
         yield
     finally:
-        if os.name == "posix":  # while it is held, so that it is nobody else's
+        if ours:
+            _given_up(file, lock)
+
+
+def _given_up(file: Path, lock: Any) -> None:
+    """Give a lock up, and take its file away."""
+    if os.name == "posix":  # while it is held, so that it is nobody else's
+        file.unlink(missing_ok=True)
+        lock.release()
+    else:  # Windows takes away no file that is open
+        lock.release()
+        with suppress(OSError):
             file.unlink(missing_ok=True)
-            lock.release()
-        else:  # Windows takes away no file that is open
-            lock.release()
-            with suppress(OSError):
-                file.unlink(missing_ok=True)
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-__all__ = ["Stopped", "stopped_by_signals"]
+__all__ = ["Stopped", "held_back", "stopped_by_signals"]
 
 SIGNALS = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "hung up"}
 BY_SIGNAL = 128  # shells add a signal's number to it
@@ -35,6 +35,22 @@ class Stopped(BaseException):
         return Stopped(f"{words}{self}", self.status)
 
 
+_waiting: list[list[Stopped]] = []  # of those who hold signals back, what came meanwhile
+
+
+@contextmanager
+def held_back() -> Iterator[None]:
+    """Hold signals back for a moment, so that who took something knows that it was taken."""
+    came: list[Stopped] = []
+    _waiting.append(came)
+    try:
+        yield
+    finally:
+        _waiting.pop()
+        if came:
+            raise came[0]
+
+
 @contextmanager
 def stopped_by_signals() -> Iterator[None]:
     """Raise `Stopped` at the first signal that asks the process to end; the next one ends it.
@@ -50,7 +66,10 @@ def stopped_by_signals() -> Iterator[None]:
     def stop(number: int, _frame: FrameType | None) -> None:
         for other in before:
             signal.signal(other, signal.SIG_DFL)
-        raise Stopped(before[signal.Signals(number)][1], BY_SIGNAL + number)
+        stopped = Stopped(before[signal.Signals(number)][1], BY_SIGNAL + number)
+        if not _waiting:
+            raise stopped
+        _waiting[-1].append(stopped)
 
     for number in before:
         signal.signal(number, stop)

@@ -18,7 +18,15 @@ import numpy as np
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array
 
-__all__ = ["MINIMUM_EDGE", "PAIRWISE", "AsGiven", "MinimumThickness", "Sharp", "TrailingEdge"]
+__all__ = [
+    "MINIMUM_EDGE",
+    "PAIRWISE",
+    "AsGiven",
+    "MinimumThickness",
+    "Sharp",
+    "TrailingEdge",
+    "least_width",
+]
 
 WINDOW = (0.5, 0.8)  # of chord: nothing moves ahead of the first, all moves behind the second
 LEAST_WEDGE = 0.25  # of the edge's height: what a closed edge keeps at the window's end
@@ -147,6 +155,18 @@ class Sharp:
 
 
 PAIRWISE = (AsGiven, MinimumThickness, Sharp)  # what moves opposite landmarks, each pair by itself
+
+
+def least_width(edge: TrailingEdge, thickness: Array, chord: Array) -> Array | None:
+    """Return the least width of edges over the chord, (...); None where another rule holds.
+
+    Of sections of relative thickness and chord [m] (...); a `GeometryError` says that there is no
+    room.
+    """
+    if type(edge) is MinimumThickness:
+        edge.require_room(thickness, chord)
+        return edge.width(chord)
+    return np.zeros(chord.shape) if type(edge) is AsGiven else None
 
 
 def _halves(profiles: Array) -> tuple[Array, Array]:

@@ -189,7 +189,7 @@ class ParametricBlade:
         """
         vectors, lead = self._vectors(x)
         if self.u is None:
-            made = self._evaluated(vectors).sections
+            made = self._evaluated(vectors, tested=False).sections
         else:
             made = Linearisation(self._outline, self._known, vectors).sections()
         return made.reshape(*lead, *made.shape[1:])

@@ -14,7 +14,7 @@ from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import AffineChange, Window, faded
-from bladegen.blade.edges import AsGiven, MinimumThickness, TrailingEdge
+from bladegen.blade.edges import least_width
 from bladegen.blade.sanity import CHARACTERISTICS, Oddities, characteristics, oddities
 from bladegen.curves import polygons
 from bladegen.curves.crossing import crossing_sections
@@ -160,6 +160,7 @@ class SectionBatch:
         *,
         dtype: type = np.float64,
         measured: bool = False,
+        tested: bool = True,
     ) -> Batch:
         """Make the sections of variants.
 
@@ -173,14 +174,16 @@ class SectionBatch:
             Of the sections: float64 or float32.
         measured : bool
             Measure areas, centroids and so on.
+        tested : bool
+            Look for faults and fill looks; without it both are of no length.
         """
         shape = len(t), len(self.eta)
         raw, target = self.coefficients(t), self.target(change, len(t))
         to_space, chord, twist = self.placing(change, self.weight, len(t))
         sections: Array = np.empty((*shape, len(self.blade.u), 3), dtype=dtype)
         measures = np.empty((*shape, len(polygons.MEASURES)) if measured else (0, 0, 0))
-        looks = np.empty((*shape, len(CHARACTERISTICS)))
-        width = self._edge_width(target.T, chord)
+        looks = np.empty((*shape, len(CHARACTERISTICS)) if tested else (0, 0, 0))
+        width = least_width(self.blade.trailing_edge, target.T, chord)
         if width is not None:
             faults = self._made(raw, target, chord, width, to_space, sections, measures, looks)
         else:
@@ -258,6 +261,7 @@ class SectionBatch:
         from bladegen.variants import kernels
 
         own, known = np.empty(target.shape), np.empty(target.shape, dtype=np.int64)
+        known = known if looks.size else known[:0]
         standing = self.standing(target) if sections.size else target[..., None]
         given: list[Array | Indices] = [
             self.blade.u,
@@ -274,7 +278,7 @@ class SectionBatch:
             *(np.require(values, requirements=["C", "W"]) for values in given),
             self.chord_line == KEPT,
         )
-        return self._faults(raw, own, known)
+        return self._faults(raw, own, known) if known.size else known
 
     def _faults(self, raw: Array, own: Array, known: Indices) -> Indices:
         """Return what is wrong with sections (k, b): a place in `FAULTS`."""
@@ -290,11 +294,3 @@ class SectionBatch:
         crossing = crossing_sections(self.features[k].mT @ raw[k, b])
         faults[k[crossing], b[crossing]] = CROSSING
         return faults
-
-    def _edge_width(self, thickness: Array, chord: Array) -> Array | None:
-        """Return the least width of edges over the chord (b, k); None if another rule holds."""
-        edge: TrailingEdge = self.blade.trailing_edge
-        if type(edge) is MinimumThickness:
-            edge.require_room(thickness, chord)
-            return edge.width(chord)
-        return np.zeros(chord.shape) if type(edge) is AsGiven else None

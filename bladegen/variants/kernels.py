@@ -26,7 +26,7 @@ from bladegen.variants.sizes import chord_line, sizing
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 9  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 10  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -67,7 +67,7 @@ def made(
         and shift; not looked at without sections and measures.
     own : (k, b) array
         Filled: the relative thickness before.
-    known : (k, b) array of int
+    known : (k, b) array of int, or of no length
         Filled: `SOUND`, `CROSSING`, or `OPEN` to an exact test.
     chord : (b, k) array
         [m].
@@ -93,7 +93,8 @@ def made(
         for b in range(count):
             c = coefficients[k, b]
             combine(values[k], c, points)
-            known[k, b] = SOUND if laddered(points) else compared(points, moved)
+            if len(known):
+                known[k, b] = SOUND if laddered(points) else compared(points, moved)
             section = Section(u, slopes[k], c, points)
             total, own[k, b] = sizing(section, values[k], target[k, b], now, moved, work)
             if not len(sections) and not len(looks):

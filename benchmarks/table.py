@@ -22,6 +22,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
+from datetime import date
 from importlib.metadata import PackageNotFoundError, version
 from itertools import groupby
 from pathlib import Path
@@ -35,7 +36,8 @@ LIBRARIES = ("bladegen", "numpy", "scipy", "numba", "cadquery-ocp", "trimesh", "
 SKIPPED = {"figures", "table", "wisdem_run"}  # the last needs another environment
 HEAD = f"""# Measured
 
-All of `benchmarks/`, in one run: `make bench`. Contenders take turns within a run, all warm.
+What `benchmarks/` print, each in one run of its own; `make bench` runs all. Contenders take turns
+within a run, all warm.
 Where a cell holds four figures they are the {SPREAD} of as many runs, variants or
 stations as the head says. Machines differ and are shared: compare within a row. The rules that all
 benchmarks keep are at the head of `benchmarks/figures.py`.
@@ -188,7 +190,8 @@ def main() -> None:
         print(f"== {script.name}", flush=True)
         start = time.perf_counter()
         found[script.stem] = rows_of(script, asked.quick)
-        made[script.stem] = "\n" + "\n".join(tables(found[script.stem]))
+        rows = "\n".join(tables(found[script.stem]))
+        made[script.stem] = rows and f"\nMeasured on {date.today()}.\n\n{rows}"
         print(f"== {script.name} took {time.perf_counter() - start:.0f} s", flush=True)
     text = HEAD + f"\n{machine()}\n"
     for name in sorted(name for name in made if made[name].strip()):

@@ -32,9 +32,9 @@ class Answering(typer.core.TyperCommand):
             return list(super().parse_args(ctx, args))
         except BadParameter as error:
             said = error.message
-            if error.param is not None and re.search(r"valid (integer|number|float)", said):
+            if error.param is not None and re.search(r"valid (int|integer|number|float)\b", said):
                 value = _typed(error.param.opts, typed)
-                error.message = instead_of(value, whole="integer" in said)
+                error.message = instead_of(value, whole="valid int" in said)
             raise
         except UsageError as error:
             if error.message.startswith("Got unexpected extra argument"):

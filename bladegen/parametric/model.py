@@ -69,7 +69,7 @@ class ParametricBlade:
         What a change of shape does with the chord line: "kept" or "paper".
     bounds : mapping of str to (low, high), optional
         For `lower` and `upper`; by default those of the space's data for coordinates, and what
-        `AffineChange` calls usual for others.
+        the user's guide calls usual for others.
 
     Raises
     ------

@@ -5,6 +5,7 @@ between knots a clamped cubic spline, which is linear in the numbers, has no kin
 its ends and beyond.  Vectors x (p,) become amounts over span.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -25,12 +26,12 @@ __all__ = ["AFFINE", "USUAL", "Parameters", "clamped"]
 
 AFFINE = tuple(RANGES)
 IDENTITY = {"twist": 0.0}  # the others are factors
-USUAL = {  # bounds where the space's data give none: what `AffineChange` calls usual
+USUAL = {  # bounds where the space's data give none: what the user's guide calls usual
     "thickness": (0.8, 1.2),
     "camber": (0.9, 1.1),
-    "chord": (0.8, 1.2),
-    "twist": (-0.1, 0.1),
-    "chord_scale": (0.8, 1.2),
+    "chord": (0.9, 1.1),
+    "twist": (-math.radians(5.0), math.radians(5.0)),
+    "chord_scale": (0.9, 1.1),
     "twist_scale": (0.5, 1.5),
     "prebend_scale": (0.0, 2.0),
 }

@@ -209,3 +209,19 @@ def test_a_package_that_may_not_be_written_keeps_its_kernels_with_the_user(tmp_p
         check=True,
     )
     assert Path(run.stdout.strip()).is_relative_to(tmp_path)
+
+
+def test_what_is_compiled_already_is_known(tmp_path):
+    code = (
+        "from bladegen.support.compiled import is_kept;"
+        "from bladegen.curves import plane_maps as p;"
+        "print(is_kept(p.distance)); p.distance((0.0, 0.0), (3.0, 4.0)); print(is_kept(p.distance))"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert run.stdout.split() == ["False", "True"]

@@ -96,6 +96,8 @@ def family(
     from bladegen.families.order import Order
     from bladegen.families.run import run
     from bladegen.shapes.shape_space import ShapeSpace
+    from bladegen.support.compiled import is_kept
+    from bladegen.variants import kernels
 
     suffixes = suffixes_of(formats)
     known = None
@@ -128,6 +130,8 @@ def family(
         "float64" if double else "float32",
         producing.options(),
     )
+    if not is_kept(kernels.made):
+        remark("compiling loops, once on this machine: about ten seconds")
     try:
         with _cluster(dask) as client, variants_bar(len(planned)) as progress:
             made = run(
@@ -136,7 +140,9 @@ def family(
                 client=client,
                 resume=resume,
                 progress=progress,
-                foretold=lambda forecast: remark(f"still to be made: {forecast}"),
+                foretold=lambda forecast: (
+                    remark(f"still to be made: {forecast}") if forecast.variants else None
+                ),
             )
     except Stopped as stop:
         raise stop.saying(f"{output}: the same command with --resume goes on; ") from None

@@ -15,11 +15,12 @@ some hundred times as slowly.
 
 from collections.abc import Callable
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-__all__ = ["NUMBA", "ONE", "ZERO", "compiled"]
+__all__ = ["NUMBA", "ONE", "ZERO", "compiled", "is_kept"]
 
 # to pass on: for a plain 1 a function is compiled once more
 ZERO: Any = np.int64(0)
@@ -38,3 +39,12 @@ def compiled(function: Callable[..., Any]) -> Any:
         return njit(cache=True, **options)(function)
     except RuntimeError:  # neither the package's folder nor the user's can be written
         return njit(**options)(function)
+
+
+def is_kept(function: Any) -> bool:
+    """Tell whether a compiled function lies on the disk, so that it need not be compiled now."""
+    if not NUMBA:
+        return True
+    place = getattr(function.stats, "cache_path", None)
+    name = f"{function.py_func.__module__.rpartition('.')[2]}.{function.py_func.__qualname__}-"
+    return place is not None and any(Path(place).glob(f"{name}*.nbi"))

@@ -346,6 +346,7 @@ def test_sound_vectors_are_told_from_others_as_in_a_family():
         ({"blade": "iea15mw"}, "blade: got 'iea15mw', must be a Blade"),
         ({"space": "bundled"}, "space: got 'bundled', must be a ShapeSpace"),
         ({"window": 3}, "window: got 3"),
+        ({"u": np.array([0.1, 0.9])}, "u: must run from 0 to 1 and be symmetric"),
         ({"chord_line": "kpet"}, "chord_line: got 'kpet'"),
     ],
 )

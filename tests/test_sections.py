@@ -4,8 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+import bladegen as bg
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.airfoils.section_splines import SectionSplines
+from bladegen.blade.edges import MinimumThickness, Sharp
 from bladegen.errors import GeometryError
 from strategies import airfoils, box, circle, ellipse, four_digit
 
@@ -139,3 +141,16 @@ def test_few_landmarks_have_measures_too(n):
     curves = splines.fit(points @ A + c[:, None])
     assert_allclose(curves.chord, 1.0, atol=1e-9)
     assert_allclose(curves.relative_thickness, wanted, rtol=1e-6)
+
+
+@pytest.mark.parametrize("edge", [MinimumThickness(0.01), Sharp()])
+def test_points_are_the_same_whatever_others_are_asked_for(edge):
+    blade = bg.Blade.from_definition(bg.read("nrel5mw")).with_trailing_edge(edge)
+    eta, rng = np.array([0.3, 0.95]), np.random.default_rng(3)
+    few = np.sort(rng.uniform(0.001, 0.999, 7))  # neither the ends, nor symmetric
+    whole = np.unique(np.concatenate([[0.0, 0.5, 1.0], few, 1.0 - few]))
+    for one in (blade, blade.mirror_image()):
+        points = one.sections(eta, whole)[:, np.searchsorted(whole, few)]
+        assert_allclose(one.sections(eta, few), points, rtol=0, atol=1e-12)
+        assert_allclose(one.point(eta[:, None], few), points, rtol=0, atol=1e-12)
+        assert_allclose(one.sections(eta, few[3:4]), points[:, 3:4], rtol=0, atol=1e-12)

@@ -24,7 +24,7 @@ from bladegen.blade.perturbation import Perturbation, Where, change_of, together
 from bladegen.blade.planform import Planform, SectionPlanes, normal_to_axis
 from bladegen.blade.shape import Shape
 from bladegen.blade.soundness import Trial, leaving
-from bladegen.blade.spans import MIRROR, reflected, span_fractions
+from bladegen.blade.spans import MIRROR, around, reflected, span_fractions
 from bladegen.definition.blade_definition import BladeDefinition, Distribution
 from bladegen.errors import DefinitionError, Finding, visible
 from bladegen.shapes.shape_space import ShapeSpace
@@ -185,11 +185,11 @@ class Blade:
 
         Trailing edges are finished; landmarks run from there along the first of `sides` to the
         leading edge and back along the second, round the same way in a mirror image.
-        `u` (m,) are others, as for `profiles`, 0 and 1 among them.
+        `u` (m,) are other landmark parameters, any: points between landmarks on the same sections.
         """
-        spans = span_fractions(eta)
+        spans, (places, kept) = span_fractions(eta), around(u)
         flat = spans.reshape(-1)
-        placed = self.placed(self.profiles(flat, u), flat)
+        placed = self.placed(self.profiles(flat, places), flat)[:, kept]
         return placed.reshape(*spans.shape, *placed.shape[1:])
 
     def placed(self, profiles: Array, eta: Array) -> Array:

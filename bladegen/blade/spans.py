@@ -6,7 +6,7 @@ from bladegen.errors import DefinitionError
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array, ArrayLike, Indices, readonly
 
-__all__ = ["MIRROR", "both_sides", "landmarks_at", "reflected", "span_fractions"]
+__all__ = ["MIRROR", "around", "both_sides", "landmarks_at", "reflected", "span_fractions"]
 
 MIRROR = readonly([1.0, -1.0, 1.0])
 
@@ -39,6 +39,19 @@ def both_sides(u: Array) -> tuple[Array, Indices]:
     at = np.searchsorted(side, np.minimum(u, 1.0 - u))
     both = np.concatenate([side, 1.0 - side[-2::-1]])
     return both, np.where(u <= 0.5, at, len(both) - 1 - at)
+
+
+def around(u: ArrayLike | None) -> tuple[Array | None, Indices | slice]:
+    """Return parameters that are symmetric and hold both ends, and where those asked for stand.
+
+    Trailing edges are finished by opposite points and by the ends, whatever points are wanted.
+    """
+    if u is None:
+        return None, slice(None)
+    values = landmarks_at(u, 1)
+    if values.size > 1 and values[0] == 0.0 and np.allclose(values, 1.0 - values[::-1], 0.0, 1e-12):
+        return values, slice(None)
+    return both_sides(values)
 
 
 def reflected(sections: Array) -> Array:

@@ -25,7 +25,7 @@ from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.window import Window
 from bladegen.blade.perturbation import Where
-from bladegen.blade.spans import landmarks_at, span_fractions
+from bladegen.blade.spans import around, span_fractions
 from bladegen.errors import PerturbationError
 from bladegen.parametric import outputs
 from bladegen.parametric.chain import change_of
@@ -62,7 +62,8 @@ class ParametricBlade:
     eta : (k,) array, optional
         Span fractions of the sections; `Blade.stations(100)` by default.
     u : (n,) array, optional
-        Landmark parameters of their points, as for `Blade.sections`; the blade's by default.
+        Landmark parameters of their points, from 0 to 1, symmetric about 0.5; the blade's by
+        default.
     window : Window, optional
         Where shape, thickness, camber, chord and twist change; as for `Blade.perturbed`.
     chord_line : str
@@ -112,7 +113,10 @@ class ParametricBlade:
         instance(window, Window, "window", "a bladegen.Window(start, end)", PerturbationError)
         changed: dict[str, Any] = {"eta": readonly(eta.reshape(-1)), "window": window}
         if self.u is not None:
-            changed["u"] = readonly(landmarks_at(self.u, 1))
+            places, kept = around(self.u)
+            if not isinstance(kept, slice):
+                raise PerturbationError("u: must run from 0 to 1 and be symmetric about 0.5")
+            changed["u"] = readonly(places)
         if self.space is not None:
             must = "a ShapeSpace, such as bladegen.ShapeSpace.bundled()"
             instance(self.space, ShapeSpace, "space", must, PerturbationError)

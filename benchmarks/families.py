@@ -91,7 +91,8 @@ def main() -> None:
         "filling memory": lambda: on_threads(filled),
         "copying memory": lambda: on_threads(lambda index: source[: len(index)].copy()),
         "a plain loop": lambda: [
-            blade.perturbed(space, next(shapes)).sections(family.eta) for _ in range(LOOPED)
+            blade.perturbed(space, next(shapes), allow_odd=True).sections(family.eta)
+            for _ in range(LOOPED)
         ],
     }
     taken: dict[str, list[tuple[float, float, float]]] = {name: [] for name in works}

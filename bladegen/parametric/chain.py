@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from bladegen.blade.changes.affine_change import WHOLE, AffineChange, faded
-from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
+from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp, least_width
 from bladegen.errors import PerturbationError
 from bladegen.parametric.parameters import AFFINE, Parameters
 from bladegen.parametric.planform_slopes import CHORD, OFFSET, PREBEND, TWIST, PlacedSlopes
@@ -78,13 +78,7 @@ class Chain:
     @cached_property
     def planform(self) -> tuple[Array, Array, Array]:
         """Chord [m], twist [rad] and offset along the chord [m] of the sections, (b, k) each."""
-        own = self.batch.placing.own
-        a, weight = self._affine, self.batch.weight
-        widening = (2.0 - a["camber"]) * a["chord"]
-        chord = a["chord_scale"] * faded(own.chord, weight, widening)
-        twist = faded(a["twist_scale"] * own.twist, weight, 1.0, a["twist"])
-        offset = a["chord_scale"] * faded(own.offset_y, weight, widening)
-        return chord, twist, offset
+        return self.batch.placing.planform(self.change, self.batch.weight)
 
     def _along(self, quantity: str, slope: Array) -> Array:
         """Return derivatives (b, k, p) by way of one quantity, in which they are `slope` (b, k)."""
@@ -101,22 +95,22 @@ class Chain:
     def thickness_slopes(self) -> Array:
         """Derivatives of the relative thickness, (b, k, p)."""
         a, base = self._affine, self.batch.ruling * self.batch.weight
-        ratio = a["thickness"] * a["camber"] / ((2.0 - a["camber"]) * a["chord"])
+        own = base * self.change.thickening
         return (
-            self._along("thickness", base * ratio / a["thickness"])
-            + self._along("camber", base * ratio * 2.0 / (a["camber"] * (2.0 - a["camber"])))
-            - self._along("chord", base * ratio / a["chord"])
+            self._along("thickness", own / a["thickness"])
+            + self._along("camber", own * 2.0 / (a["camber"] * (2.0 - a["camber"])))
+            - self._along("chord", own / a["chord"])
         )
 
     def _widened(self, whole: Array) -> Array:
         """Return derivatives (b, k, p) of what goes with the chord, `whole` (k,) unperturbed."""
         a, weight = self._affine, self.batch.weight
         own = a["chord_scale"] * whole * weight
-        widening = (2.0 - a["camber"]) * a["chord"]
+        scaled = np.broadcast_to(faded(whole, weight, self.change.widening), own.shape)
         return (
             self._along("camber", -own * a["chord"])
             + self._along("chord", own * (2.0 - a["camber"]))
-            + self._along("chord_scale", np.broadcast_to(faded(whole, weight, widening), own.shape))
+            + self._along("chord_scale", scaled)
         )
 
     @cached_property
@@ -163,10 +157,10 @@ class Chain:
                 f"trailing_edge: got {shown(rule)}, derivatives are known of MinimumThickness, "
                 "AsGiven and Sharp"
             )
-        if not isinstance(rule, MinimumThickness):
+        width = least_width(rule, self.target, chord)
+        if not isinstance(rule, MinimumThickness) or width is None:
             return kind, np.zeros(chord.shape), np.zeros_like(self.chord_slopes)
-        rule.require_room(self.target, chord)
-        return kind, rule.width(chord), rule.width_slope(chord)[..., None] * self.chord_slopes
+        return kind, width, rule.width_slope(chord)[..., None] * self.chord_slopes
 
     @cached_property
     def space(self) -> tuple[Array, Array]:

@@ -18,7 +18,7 @@ from bladegen.variants.sizes import sizing
 
 __all__ = ["linearised", "lines_slopes"]
 
-REVISION = 4  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 5  # of all that is compiled with these: with another text it is compiled anew
 TERMS = 20  # of the series of cos S and sin S / S; principal angles below 2 rad need 14
 
 
@@ -68,19 +68,13 @@ def linearised(
     spans, count, features, _ = coefficients.shape
     modes = t.shape[-1]
     points, moved = np.empty((2, len(u))), np.empty((2, len(u)))
-    now, work = np.empty((features, 2)), np.empty(len(u))
-    rows, spare = np.empty((4, features, 2)), np.empty((2, 4, features, 2))
+    room = points, moved, np.empty(len(u)), np.empty((2, 4, features, 2))
+    rows, now = np.empty((4, features, 2)), np.empty((features, 2))
     raw, still = np.zeros((modes, features, 2)), np.zeros(4)
     for k in range(spans):
         for b in range(count):
             c = coefficients[k, b]
-            combine(values[k], c, points)
-            section = Section(u, slopes[k], c, points)
-            total, _ = sizing(section, values[k], target[k, b], now, moved, work)
-            carry(points, total)
-            carried(c, total, now)
-            sized = Section(u, slopes[k], now, points)
-            line = gradients(sized, values[k], work, rows, spare)
+            total, line = measured(u, values[k], slopes[k], c, target[k, b], rows, now, room)
             shape_slopes(t[k, b], gram[k], M[k], raw)
             change = changes[k, b]
             sized_slopes(values[k], now, rows, line, total, raw, change)
@@ -93,6 +87,29 @@ def linearised(
                     follow(values[k], result[k, b], rows, line, motion, there, moving, change[q])
                 else:
                     turn(change[q], motion)
+
+
+@compiled
+def measured(
+    u: Array,
+    values: Array,
+    slopes: Array,
+    c: Array,
+    target: float,
+    rows: Array,
+    now: Array,
+    room: tuple[Array, ...],
+) -> tuple[Numbers, Numbers]:
+    """Bring a section to size; return the map that does it, and the chord line that comes out.
+
+    Filled are its `gradients` (4, F, 2) and its coefficients (F, 2).
+    """
+    points, moved, work, spare = room
+    combine(values, c, points)
+    total, _ = sizing(Section(u, slopes, c, points), values, target, now, moved, work)
+    carry(points, total)
+    carried(c, total, now)
+    return total, gradients(Section(u, slopes, now, points), values, work, rows, spare)
 
 
 @compiled
@@ -201,19 +218,13 @@ def lines_slopes(
     """
     sections, count, features, _ = coefficients.shape
     points, moved = np.empty((2, len(u))), np.empty((2, len(u)))
-    now, work = np.empty((features, 2)), np.empty(len(u))
-    rows, spare = np.empty((4, features, 2)), np.empty((2, 4, features, 2))
+    room = points, moved, np.empty(len(u)), np.empty((2, 4, features, 2))
+    rows, now = np.empty((4, features, 2)), np.empty((features, 2))
     raw, change = np.empty((0, features, 2)), np.empty((1, features, 2))
     for k in range(sections):
         for b in range(count):
             c = coefficients[k, b]
-            combine(values[k], c, points)
-            section = Section(u, slopes[k], c, points)
-            total, _ = sizing(section, values[k], target[k, b], now, moved, work)
-            carry(points, total)
-            carried(c, total, now)
-            sized = Section(u, slopes[k], now, points)
-            line = gradients(sized, values[k], work, rows, spare)
+            total, line = measured(u, values[k], slopes[k], c, target[k, b], rows, now, room)
             sized_slopes(values[k], now, rows, line, total, raw, change)
             for j in range(4):
                 result[k, b, j] = 0.0

@@ -13,25 +13,25 @@ from bladegen.support.compiled import compiled
 __all__ = ["GIVEN", "MINIMUM", "SHARP", "SLOPES", "back", "carried_on", "finished"]
 
 GIVEN, MINIMUM, SHARP = range(3)  # `AsGiven`, `MinimumThickness`, `Sharp`
-SLOPES = 6
+SLOPES = 7  # the last: half the way between the sides before
 AHEAD, BEHIND = WINDOW
 
 
 @compiled
-def finished(points: Array, kind: int, width: float, slopes: Array) -> None:
-    """Finish a section (2, n) in chords, and fill the slopes (n // 2, 6) of what is done.
+def finished(points: Array, kind: int, width: float, slopes: Array) -> float:
+    """Finish a section (2, n) in chords, and fill the slopes (n // 2, 7) of what is done.
 
-    `width` is the least thickness of the edge, in chords.
+    `width` is the least thickness of the edge, in chords.  How far it was open is returned.
     """
     x, y = points[0], points[1]
-    gap = y[0] - y[-1]
+    gap: float = y[0] - y[-1]
     missing = 0.25 * (width * width - gap * gap)
     for i in range(len(slopes)):
         slopes[i, 0] = 1.0
         for j in range(1, SLOPES):
             slopes[i, j] = 0.0
     if kind == GIVEN or (kind == MINIMUM and not missing > 0.0):
-        return
+        return gap
     rear = 0.5 * (x[0] + x[-1])
     for i in range(len(x) // 2):
         middle, half = 0.5 * (x[i] + x[-1 - i]), 0.5 * (y[i] - y[-1 - i])
@@ -51,10 +51,11 @@ def finished(points: Array, kind: int, width: float, slopes: Array) -> None:
             y[-1 - i] = level - raised
             continue
         share = closed_share(s, half, max(0.5 * gap, 0.0), weight, rate, rear - middle)
-        s[5] = 0.5 * (x[i] - x[-1 - i])
+        s[5], s[6] = 0.5 * (x[i] - x[-1 - i]), half
         across = s[5] * share
         x[i], x[-1 - i] = middle + across, middle - across
         y[i], y[-1 - i] = level + half * share, level - half * share
+    return gap
 
 
 @compiled
@@ -86,13 +87,10 @@ def closed_share(
 
 
 @compiled
-def carried_on(
-    slopes: Array, kind: int, gap: float, width: float, step: float, d: Array, half: Array
-) -> None:
+def carried_on(slopes: Array, kind: int, gap: float, width: float, step: float, d: Array) -> None:
     """Apply a rule's derivative in place to a direction d (2, n), whose width moves by `step`.
 
-    `gap` (before) and `width` are those of `finished`; `half` (n // 2,) is half the sides'
-    distance before.
+    `gap` is what `finished` returned, and `width` what it was given.
     """
     if kind == GIVEN:
         return
@@ -111,13 +109,13 @@ def carried_on(
         across = 0.5 * (x[i] - x[-1 - i])
         share = s[1] * middle + s[2] * 0.5 * opened + s[3] * rear + s[4] * rise
         across = s[0] * across + s[5] * share
-        raised = s[0] * rise + half[i] * share
+        raised = s[0] * rise + s[6] * share
         x[i], x[-1 - i] = middle + across, middle - across
         y[i], y[-1 - i] = level + raised, level - raised
 
 
 @compiled
-def back(slopes: Array, kind: int, gap: float, width: float, g: Array, half: Array) -> float:
+def back(slopes: Array, kind: int, gap: float, width: float, g: Array) -> float:
     """Apply the transpose of `carried_on` in place to g (2, n); return what falls to the width."""
     if kind == GIVEN:
         return 0.0
@@ -132,7 +130,7 @@ def back(slopes: Array, kind: int, gap: float, width: float, g: Array, half: Arr
             middle += s[1] * raised
             missing += 2.0 * s[2] * raised
         else:
-            share = s[5] * across + half[i] * raised
+            share = s[5] * across + s[6] * raised
             rise = s[0] * raised + s[4] * share
             across = s[0] * across
             middle += s[1] * share

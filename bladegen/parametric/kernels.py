@@ -12,7 +12,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["points_gradient", "points_slopes"]
 
-REVISION = 4  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 5  # of all that is compiled with these: with another text it is compiled anew
 BLOCK = 32  # points
 
 
@@ -52,22 +52,19 @@ def points_slopes(
     """
     spans, count, own = changes.shape[:3]
     n, p = values.shape[-1], chain.shape[-1]
-    points, half = np.empty((2, n)), np.empty(n // 2)
+    points = np.empty((2, n))
     rules, parts = np.empty((n // 2, SLOPES)), np.empty((own + 1, 2, n))
     rows, ways = np.empty((own + 4, n)), np.empty((own + 4, p))
     for k in range(spans):
         for b in range(count):
             combine(values[k], c[k, b], points)
-            gap = points[1, 0] - points[1, -1]
-            for i in range(n // 2):
-                half[i] = 0.5 * (points[1, i] - points[1, -1 - i])
-            finished(points, kind, width[b, k], rules)
+            gap = finished(points, kind, width[b, k], rules)
             for q in range(own):
                 combine(values[k], changes[k, b, q], parts[q])
-                carried_on(rules, kind, gap, width[b, k], 0.0, parts[q], half)
+                carried_on(rules, kind, gap, width[b, k], 0.0, parts[q])
             for i in range(n):
                 parts[own, 0, i] = parts[own, 1, i] = 0.0
-            carried_on(rules, kind, gap, width[b, k], 1.0, parts[own], half)
+            carried_on(rules, kind, gap, width[b, k], 1.0, parts[own])
             axes = to_space[b, k]
             for i in range(n):
                 rows[own + 1, i], rows[own + 2, i], rows[own + 3, i] = (
@@ -143,15 +140,12 @@ def points_gradient(
     """
     spans, count, directions, features = changes.shape[:4]
     n = values.shape[-1]
-    points, g, half = np.empty((2, n)), np.empty((2, n)), np.empty(n // 2)
+    points, g = np.empty((2, n)), np.empty((2, n))
     rules = np.empty((n // 2, SLOPES))
     for k in range(spans):
         for b in range(count):
             combine(values[k], c[k, b], points)
-            gap = points[1, 0] - points[1, -1]
-            for i in range(n // 2):
-                half[i] = 0.5 * (points[1, i] - points[1, -1 - i])
-            finished(points, kind, width[b, k], rules)
+            gap = finished(points, kind, width[b, k], rules)
             axes, there = to_space[b, k], in_space[b, k]
             for i in range(3):
                 for j in range(3):
@@ -166,7 +160,7 @@ def points_gradient(
                     there[2, j] += one
                     g[0, i] += axes[0, j] * one
                     g[1, i] += axes[1, j] * one
-            in_width[b, k] = back(rules, kind, gap, width[b, k], g, half)
+            in_width[b, k] = back(rules, kind, gap, width[b, k], g)
             for q in range(directions):
                 own[b, k, q] = 0.0
             for f in range(features):

@@ -25,7 +25,7 @@ from bladegen.support.values import brief
 __all__ = ["AFFINE", "USUAL", "Parameters", "clamped"]
 
 AFFINE = tuple(RANGES)
-IDENTITY = {"twist": 0.0}  # the others are factors
+IDENTITY = AffineChange()
 USUAL = {  # bounds where the space's data give none: what the user's guide calls usual
     "thickness": (0.8, 1.2),
     "camber": (0.9, 1.1),
@@ -252,4 +252,4 @@ def _parted(entry: Any) -> tuple[Any, Any]:
 
 def identity(name: str) -> float:
     """Return the amount of a quantity that changes nothing."""
-    return 0.0 if name.startswith("pga") else IDENTITY.get(name, 1.0)
+    return 0.0 if name.startswith("pga") else float(IDENTITY.plain(name))

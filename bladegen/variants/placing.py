@@ -37,17 +37,8 @@ class Placing:
 
         What acts within a window does so by its weights (k,).
         """
-        own = self.own
-        widening, whole = column(change.widening), column(change.plain("chord_scale"))
-        chord = whole * faded(own.chord, weight, widening)
-        twist = faded(
-            column(change.plain("twist_scale")) * own.twist,
-            weight,
-            1.0,
-            column(change.plain("twist")),
-        )
-        offset_y = whole * faded(own.offset_y, weight, widening)
-        offset = np.stack(np.broadcast_arrays(-offset_y, own.offset_x), axis=-1)
+        chord, twist, offset_y = self.planform(change, weight)
+        offset = np.stack(np.broadcast_arrays(-offset_y, self.own.offset_x), axis=-1)
         axis, frames = self._axis(np.asarray(change.plain("prebend_scale"), dtype=np.float64))
         axes, start = placement(chord, twist, offset, axis, frames)
         shape = count, len(self.eta)
@@ -56,6 +47,17 @@ class Placing:
             np.broadcast_to(to_space, (*shape, 3, 3)),
             np.array(np.broadcast_to(chord, shape)),
             np.array(np.broadcast_to(twist, shape)),
+        )
+
+    def planform(self, change: AffineChange, weight: Array) -> tuple[Array, Array, Array]:
+        """Return chord [m], twist [rad] and offset along the chord [m], (b or 1, k) each."""
+        own = self.own
+        widening, whole = column(change.widening), column(change.plain("chord_scale"))
+        scale, turn = column(change.plain("twist_scale")), column(change.plain("twist"))
+        return (
+            whole * faded(own.chord, weight, widening),
+            faded(scale * own.twist, weight, 1.0, turn),
+            whole * faded(own.offset_y, weight, widening),
         )
 
     @cached_property

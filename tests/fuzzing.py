@@ -35,7 +35,7 @@ import bladegen as bg
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.airfoils.polars import Polar
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
-from bladegen.blade.planform import normal_to_axis, normal_to_z
+from bladegen.blade.planform import flange_to_axis, normal_to_axis, normal_to_z
 from bladegen.errors import BladegenError
 from bladegen.exports.options import Options
 from bladegen.formats import writing
@@ -307,7 +307,7 @@ def answer_blade(path: Path, out: Path, rng: Random) -> str:
         definition,
         landmarks=rng.choice((5, 7, 11, 21, 41)),
         path=rng.choice(("geodesic", "spline")),
-        planes=rng.choice((normal_to_axis, normal_to_z)),
+        planes=rng.choice((flange_to_axis, normal_to_axis, normal_to_z)),
         trailing_edge=rng.choice((AsGiven(), MinimumThickness(), Sharp())),
     )
     finite(blade.profiles(SPANS), blade.sections(SPANS))

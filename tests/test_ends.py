@@ -45,6 +45,11 @@ def test_a_trailing_edge_that_lies_too_far_aft_is_seen_on_its_strip():
     assert after["trailing edge"].maximum > 0.9 * SHIFT
 
 
+def test_the_root_face_of_a_solid_lies_in_the_plane_of_the_flange():
+    assert BLADE.definition.axis(0.0, 1)[0] != 0.0
+    assert_allclose(NET.poles[:, 0, 2], 0.0, atol=1e-12)
+
+
 @pytest.mark.parametrize(("face", "column"), [("root", 0), ("tip", -1)])
 def test_an_end_that_lies_too_far_out_is_seen(face, column):
     normal = BLADE.planform.frames(np.array([0.0 if face == "root" else 1.0]))[0, 2]

@@ -103,6 +103,17 @@ def test_every_finish_of_the_trailing_edge_is_differentiated(edge):
     agree(model.jacobian(x), differences(model.sections, x))
 
 
+def test_planes_that_turn_from_the_flange_follow_the_prebend():
+    """Between the flange and the end of the round root, where the bundled blades lean."""
+    blade = bg.Blade.from_definition(bg.read("iea15mw"), landmarks=101)
+    model = bg.ParametricBlade(blade, None, ("prebend_scale",), np.linspace(0.0, 0.03, 13))
+    x = np.array([1.3])
+    agree(model.jacobian(x), differences(model.sections, x))
+    assert_allclose(model.sections(x)[0, :, 2], 0.0, atol=1e-14)
+    bent = blade.perturbed(prebend_scale=1.3)
+    assert_allclose(model.sections(x), bent.sections(model.eta), atol=1e-12)
+
+
 def test_sections_that_stay_normal_to_z_follow_the_prebend():
     definition = bg.read("iea15mw")
     blade = bg.Blade.from_definition(definition, planes=normal_to_z)

@@ -1,11 +1,28 @@
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from bladegen.blade.planform import Planform, normal_to_axis, normal_to_z, placement
-from bladegen.definition.blade_definition import BladeDefinition, Distribution, ReferenceAxis
-from strategies import definitions
+from bladegen.blade.blade import Blade
+from bladegen.blade.planform import (
+    Planform,
+    flange_to_axis,
+    normal_to_axis,
+    normal_to_z,
+    placement,
+    root_end,
+)
+from bladegen.definition.blade_definition import (
+    Airfoil,
+    BladeDefinition,
+    Distribution,
+    ReferenceAxis,
+    Station,
+)
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
+from strategies import circle, definitions
 
 ETA = np.linspace(0.0, 1.0, 33)
 
@@ -47,15 +64,106 @@ def test_an_axis_whose_spline_starts_or_ends_at_rest_has_frames(values):
     assert_allclose(normal_to_axis(axis)(ETA), np.broadcast_to(np.eye(3), (33, 3, 3)), atol=1e-12)
 
 
+def test_a_root_whose_axis_rises_from_rest_and_leans_is_a_flange():
+    axis = ReferenceAxis(line(0.0, 1.0, 3.0), line(0.0, 0.0), line(0.0, 1.0, 100.0))
+    assert axis(0.0, 1)[2] == 0.0 != axis(0.0, 1)[0]
+    assert_allclose(flange_to_axis(axis, 0.02)(np.zeros(1))[0], np.eye(3), atol=1e-15)
+
+
 def test_frames_normal_to_z_stay():
     axis = ReferenceAxis(line(0.0, -4.0), line(0.0, 1.0), line(0.0, 100.0))
     assert_allclose(normal_to_z(axis)(ETA), np.broadcast_to(np.eye(3), (33, 3, 3)))
 
 
-def blade(**changes) -> BladeDefinition:
-    from bladegen.definition.blade_definition import Airfoil, Station
-    from strategies import circle
+ROOTS = st.floats(1e-4, 0.05)
 
+
+@given(definitions(), ROOTS)
+def test_the_root_is_normal_to_z_and_sections_past_it_to_the_axis(definition, root):
+    frames = flange_to_axis(definition.axis, root)
+    assert_allclose(frames(np.zeros(1))[0], np.eye(3), atol=1e-15)
+    past = np.union1d(ETA[root <= ETA], root)
+    normals = normal_to_axis(definition.axis)(past)[:, 2]
+    assert_allclose(frames(past)[:, 2], normals, atol=1e-12)
+
+
+@given(definitions(), ROOTS)
+def test_planes_turn_monotonely_and_nowhere_jump(definition, root):
+    """Slopes against z are shares of the axis' own, which rise from none to all."""
+    eta = np.linspace(0.0, root, 33)
+    normals = flange_to_axis(definition.axis, root)(eta)[:, 2]
+    own = definition.axis(eta, 1)
+    sizes = np.hypot(own[:, 0], own[:, 1]) / own[:, 2]
+    tilts = np.hypot(normals[:, 0], normals[:, 1]) / normals[:, 2]
+    shares = tilts[sizes > 1e-6] / sizes[sizes > 1e-6]
+    assert np.all(np.diff(shares) >= -1e-7)
+    assert np.all((shares >= 0.0) & (shares <= 1.0 + 1e-7))
+
+
+def test_the_turn_has_no_corner_at_either_end():
+    """On a straight leaning axis the tilt is the weight itself, flat and straight at both ends."""
+    root, slope, step = 0.04, 0.1, 1e-4
+    axis = ReferenceAxis(line(0.0, slope * 50.0), line(0.0, 0.0), line(0.0, 50.0))
+    for end, inward in ((0.0, 1.0), (root, -1.0)):
+        eta = end + inward * step * np.arange(3)
+        normals = flange_to_axis(axis, root)(eta)[:, 2]
+        share = normals[:, 0] / normals[:, 2] / slope
+        first, second = share[1] - share[0], share[2] - 2.0 * share[1] + share[0]
+        cubic = (step / root) ** 3
+        assert abs(first) <= 10.0 * cubic
+        assert abs(second) <= 60.0 * cubic
+
+
+@pytest.mark.parametrize("path", ["straight", "leaning"])
+def test_a_straight_cylinder_is_a_cylinder(path):
+    """To the part of it that an ellipse in its plane is from a circle: r (1 - cos) of the slope."""
+    lean = 0.0 if path == "straight" else 0.01
+    axis = ReferenceAxis(line(0.0, lean * 50.0), line(0.0, 0.0), line(0.0, 50.0))
+    u = np.linspace(0.0, 2.0 * np.pi, 33)
+    round_ = np.stack([0.5 + 0.5 * np.cos(u), 0.5 * np.sin(u)], axis=-1)
+    eta = np.linspace(0.0, 1.0, 101)
+    pipe = blade(axis=axis, pitch_axis=line(0.5, 0.5))
+    points = Planform(pipe).place(np.broadcast_to(round_, (101, 33, 2)), eta)
+    along = np.array([lean, 0.0, 1.0]) / np.hypot(lean, 1.0)
+    distance = np.linalg.norm(points - (points @ along)[..., None] * along, axis=-1)
+    assert_allclose(distance, 1.0, atol=1e-12 + lean**2 / 2.0)
+    assert_allclose(points[0, :, 2], 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", bundled())
+def test_the_root_face_is_a_flange(name):
+    made = Blade.from_definition(read(name), landmarks=101)
+    (root,) = made.sections([0.0])
+    assert_allclose(root[:, 2], 0.0, atol=1e-14)
+    assert made.sections(np.linspace(0.0, 0.05, 101))[..., 2].min() >= -1e-14
+    end = root_end(made.definition)
+    assert end in made.eta
+    past = np.linspace(end, 1.0, 50)
+    assert_allclose(
+        made.planform.frames(past)[:, 2], normal_to_axis(made.definition.axis)(past)[:, 2]
+    )
+
+
+@pytest.mark.parametrize(
+    ("etas", "kinds", "expected"),
+    [
+        ((0.0, 0.02, 0.2), "rra", 0.02),
+        ((0.0, 0.03, 0.2), "raa", 0.03),
+        ((0.0, 0.2, 0.5), "raa", 0.05),
+        ((0.0, 0.2, 1.0), "rra", 0.05),
+        ((0.0, 1.0), "rr", 0.05),
+        ((0.0, 0.2, 1.0), "aaa", 0.0),
+        ((0.0, 0.02, 1.0), "ara", 0.0),
+    ],
+)
+def test_where_a_round_root_ends(etas, kinds, expected):
+    wing = Airfoil("wing", np.array([[1.0, 0.0], [0.5, 0.1], [0.0, 0.0], [0.5, -0.1], [1.0, 0.0]]))
+    airfoils = {"r": Airfoil("circle", circle()), "a": wing}
+    stations = tuple(Station(eta, airfoils[kind]) for eta, kind in zip(etas, kinds, strict=True))
+    assert root_end(blade(stations=stations)) == expected
+
+
+def blade(**changes) -> BladeDefinition:
     round_ = Airfoil("circle", circle())
     fields = {
         "name": "test",
@@ -147,7 +255,7 @@ def test_agrees_with_pglw(prebend, sweep, allowed_deg):
     ]
     bent = blade(axis=ReferenceAxis(*curve), pitch_axis=line(0.0, 0.0))
     points = np.broadcast_to([[0.0, 0.0], [1.0, 0.0], [0.3, 0.1]], (201, 3, 2))
-    ours = Planform(bent).place(points, eta)
+    ours = Planform(bent, normal_to_axis).place(points, eta)
     theirs = placed_by_pgl(2.0 * points[..., ::-1], bent.axis(eta), bent.twist(eta))
     chords = [p[:, 1] - p[:, 0] for p in (ours, theirs)]
     angle = np.linalg.norm(np.cross(*chords), axis=1) / 4.0

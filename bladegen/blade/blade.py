@@ -21,7 +21,7 @@ from bladegen.blade.edges import MINIMUM_EDGE, TrailingEdge
 from bladegen.blade.lofting.loft import lofted
 from bladegen.blade.lofting.paths import PATHS
 from bladegen.blade.perturbation import Perturbation, Where, change_of, together, told
-from bladegen.blade.planform import Planform, SectionPlanes, normal_to_axis
+from bladegen.blade.planform import Planform, SectionPlanes, flange_to_axis
 from bladegen.blade.shape import Shape
 from bladegen.blade.soundness import Trial, leaving
 from bladegen.blade.spans import MIRROR, around, reflected, span_fractions
@@ -107,7 +107,7 @@ class Blade:
         *,
         landmarks: int = 401,
         path: str = "geodesic",
-        planes: SectionPlanes = normal_to_axis,
+        planes: SectionPlanes = flange_to_axis,
         trailing_edge: TrailingEdge = MINIMUM_EDGE,
         spacing: Spacing = clustered,
         fairing: float | None = TOLERANCE,
@@ -123,9 +123,10 @@ class Blade:
         path : str
             "geodesic" (the paper's) or "spline" (smooth).
         planes, trailing_edge, spacing : callable
-            Section planes, normal to the reference axis by default; finish of the trailing edges,
-            by default at least 2 mm thick, or 1 % of the local chord where that is less; spacing
-            of the landmarks along each side.
+            Section planes, by default normal to the pitch axis at the root's flange and to the
+            reference axis past the round root; finish of the trailing edges, by default at least
+            2 mm thick, or 1 % of the local chord where that is less; spacing of the landmarks
+            along each side.
         fairing : float, optional
             Largest distance of an airfoil's given points to its curve [chord], within which
             noise of their digits is taken out; None keeps the points.

@@ -10,6 +10,11 @@ lies at
 
 This is the one place where these signs stand.  Frames are rotation-minimising along the
 reference axis: no roll is added (Wang, Juttler, Zheng & Liu, ACM TOG 27 (2008)).
+
+The root is a flange: over the round root, from span fraction 0 to r (`root_end`), the normals of
+sections turn from the pitch axis to the reference axis.  With f = eta / r, they are along
+
+    (w x', w y', z')        w = f^3 (10 - 15 f + 6 f^2)
 """
 
 import math
@@ -20,6 +25,7 @@ from typing import cast
 
 import numpy as np
 
+from bladegen.blade.changes.window import Window
 from bladegen.definition.blade_definition import BladeDefinition, ReferenceAxis
 from bladegen.errors import DefinitionError
 from bladegen.support.arguments import function
@@ -31,16 +37,33 @@ __all__ = [
     "Frames",
     "Planform",
     "SectionPlanes",
+    "flange_to_axis",
     "normal_to_axis",
     "normal_to_z",
     "placement",
+    "root_end",
 ]
 
 AT_REST = 1e-6  # of the span, from an end at which the axis has no velocity
+LONGEST_ROOT = 0.05  # of the span, over which planes turn; blades are at most so long a root
 FRAME_STEPS = 2000  # spans at which frames are carried; a sweep of 10 % turns by 1e-4 rad a step
 
 Frames = Callable[[Array], Array]
 SectionPlanes = Callable[[ReferenceAxis], Frames]
+
+
+def root_end(definition: BladeDefinition) -> float:
+    """Return the span fraction at which a blade's round root ends, 0 if its root is not round.
+
+    That is the last station before the first airfoil that is not round, or this one's if only the
+    root itself is round; at most `LONGEST_ROOT`.
+    """
+    stations = definition.stations
+    first = next((i for i, one in enumerate(stations) if not one.airfoil.is_round), len(stations))
+    if first == 0:
+        return 0.0
+    last = stations[first - 1].eta or stations[first].eta
+    return min(last, LONGEST_ROOT)
 
 
 def normal_to_z(axis: ReferenceAxis) -> Frames:  # noqa: ARG001
@@ -49,7 +72,19 @@ def normal_to_z(axis: ReferenceAxis) -> Frames:  # noqa: ARG001
 
 
 def normal_to_axis(axis: ReferenceAxis) -> Frames:
-    """Turn section planes normal to the reference axis, without adding roll.
+    """Turn section planes normal to the reference axis, without adding roll."""
+    return flange_to_axis(axis, 0.0)
+
+
+def flange_to_axis(axis: ReferenceAxis, root: float = LONGEST_ROOT) -> Frames:
+    """Turn section planes from the flange to the reference axis, then with it, without roll.
+
+    Parameters
+    ----------
+    axis : ReferenceAxis
+        What they follow.
+    root : float
+        Span fraction from which on they are normal to the axis; at 0 they are normal to z.
 
     Returns
     -------
@@ -58,18 +93,22 @@ def normal_to_axis(axis: ReferenceAxis) -> Frames:
         section's x, its y and the axis' tangent.
     """
     grid = frame_grid(axis)
-    tangents = _tangents(axis, grid)
+    tangents = _tangents(axis, grid, root)
     steps = turn(np.concatenate([[[0.0, 0.0, 1.0]], tangents[:-1]]), tangents)
     carried = running_product(steps)
 
     def frames(eta: Array) -> Array:
         i = np.clip(np.searchsorted(grid, eta, side="right") - 1, 0, len(grid) - 1)
-        return carried[i] @ turn(carried[i, 2], _tangents(axis, eta))
+        return carried[i] @ turn(carried[i, 2], _tangents(axis, eta, root))
 
     return frames
 
 
-PLANES: dict[str, SectionPlanes] = {"axis": normal_to_axis, "z": normal_to_z}
+PLANES: dict[str, SectionPlanes] = {
+    "flange": flange_to_axis,
+    "axis": normal_to_axis,
+    "z": normal_to_z,
+}
 
 
 def frame_grid(axis: ReferenceAxis) -> Array:
@@ -95,20 +134,27 @@ def running_product(matrices: Array) -> Array:
     return product
 
 
-def _tangents(axis: ReferenceAxis, eta: Array) -> Array:
-    along = direction(axis, eta)
+def _tangents(axis: ReferenceAxis, eta: Array, root: float) -> Array:
+    along = direction(axis, eta, root)
     unit: Array = along / np.linalg.norm(along, axis=-1, keepdims=True)
     return unit
 
 
-def direction(axis: ReferenceAxis, eta: Array) -> Array:
-    """Return the axis' derivative (..., 3) over span, nowhere zero; beyond its ends, as there."""
+def direction(axis: ReferenceAxis, eta: Array, root: float) -> Array:
+    """Return vectors (..., 3) along the normals of sections, nowhere zero.
+
+    The axis' derivative over span; beyond its ends, as there; along z at the root, and on the way
+    from there to the axis up to the end of the `root`.
+    """
     start, end = axis.z.grid[0], axis.z.grid[-1]
-    along = axis(np.clip(eta, start, end), 1)
+    leaning = np.ones((*np.shape(eta), 3))
+    if root > 0.0:
+        leaning[..., :2] = Window(0.0, root)(np.asarray(eta))[..., None]
+    along: Array = leaning * axis(np.clip(eta, start, end), 1)
     still = ~np.any(along, axis=-1, keepdims=True)
     if still.any():  # monotone splines may start from rest: the direction just inside holds
         inside = np.clip(eta, start + AT_REST * (end - start), end - AT_REST * (end - start))
-        along = np.where(still, axis(inside, 1), along)
+        along = np.where(still, leaning * axis(inside, 1), along)
     return along
 
 
@@ -135,6 +181,7 @@ class AxisFrames:
 
     axis: ReferenceAxis
     planes: SectionPlanes
+    root: float
 
     __repr__ = brief
 
@@ -142,6 +189,8 @@ class AxisFrames:
 
     @cached_property
     def _frames(self) -> Frames:
+        if self.planes is flange_to_axis:  # the one that asks where the round root ends
+            return flange_to_axis(self.axis, self.root)
         return self.planes(self.axis)
 
     def __call__(self, eta: Array) -> Array:
@@ -157,22 +206,27 @@ class Planform:
     definition : BladeDefinition
         The distributions.
     planes : callable
-        Section planes: `normal_to_axis` or `normal_to_z`.
+        Section planes: `flange_to_axis`, `normal_to_axis` or `normal_to_z`.
     frames : AxisFrames, optional
         Section frames (k, 3, 3) as a function of span; those of another planform are kept where
         axis and planes are the same.
     """
 
     definition: BladeDefinition
-    planes: SectionPlanes = normal_to_axis
+    planes: SectionPlanes = flange_to_axis
     frames: AxisFrames = field(default=cast(AxisFrames, None), repr=False)
 
     def __post_init__(self) -> None:
         must = "a function such as bladegen.blade.planform.normal_to_z"
         function(self.planes, "planes", must, DefinitionError)
-        axis, known = self.definition.axis, self.frames
-        if known is None or known.axis is not axis or known.planes is not self.planes:
-            object.__setattr__(self, "frames", AxisFrames(axis, self.planes))
+        axis, known, root = self.definition.axis, self.frames, root_end(self.definition)
+        if (
+            known is None
+            or known.axis is not axis
+            or known.planes is not self.planes
+            or known.root != root
+        ):
+            object.__setattr__(self, "frames", AxisFrames(axis, self.planes, root))
 
     def __repr__(self) -> str:
         return f"<Planform of {self.definition.name}>"

@@ -79,7 +79,8 @@ def volume(blade: Blade) -> float:
         )
         if quantity is not None
     ]
-    knots = np.unique(np.concatenate([*grids, blade.eta, [0.0, 1.0]]))
+    ends = [0.0, blade.planform.frames.root, 1.0]
+    knots = np.unique(np.concatenate([*grids, blade.eta, ends]))
     half = 0.5 * np.diff(knots)
     eta = ((knots[:-1] + half)[:, None] + half[:, None] * _NODES).reshape(-1)
     weights = (half[:, None] * _WEIGHTS).reshape(-1)

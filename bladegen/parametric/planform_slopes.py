@@ -1,6 +1,6 @@
 """How the maps of sections to space change with chord, twist, offset and prebend.
 
-The laws are those of `blade.planform`; here stand their derivatives.  Section planes normal to
+The laws are those of `blade.planform`; here stand their derivatives.  Section planes that follow
 the axis are carried along it by rotations, whose running product is followed by its derivative:
 products of ``[[R, 0], [dR, R]]`` hold both.
 """
@@ -13,6 +13,7 @@ from bladegen.blade.planform import (
     Planform,
     crossing,
     direction,
+    flange_to_axis,
     frame_grid,
     normal_to_axis,
     normal_to_z,
@@ -76,20 +77,21 @@ class PlacedSlopes:
         planes, still = self.planform.planes, self.placing.own_axis[1][None]
         if planes is normal_to_z:
             return still, np.zeros_like(still)
-        if planes is not normal_to_axis:
+        if planes not in (flange_to_axis, normal_to_axis):
             raise PerturbationError(
-                "parameters: prebend_scale needs section planes normal to the axis or to z; "
-                "derivatives of others are not known"
+                "parameters: prebend_scale needs section planes normal to the axis or to z, or "
+                "from one to the other; derivatives of others are not known"
             )
+        root = self.planform.frames.root if planes is flange_to_axis else 0.0
         values, inverse = np.unique(scale, return_inverse=True)
-        both = np.stack([self._bent(float(value)) for value in values])[inverse]
+        both = np.stack([self._bent(float(value), root) for value in values])[inverse]
         return both[..., :3, :3], both[..., 3:, :3]
 
-    def _bent(self, scale: float) -> Array:
+    def _bent(self, scale: float, root: float) -> Array:
         """Return frames and their derivatives, ``[[F, 0], [dF, F]]`` (k, 6, 6), at one scale."""
         axis = self.planform.definition.axis
         grid = frame_grid(axis)
-        tangents, changes = _tangents(direction(axis, grid), scale)
+        tangents, changes = _tangents(direction(axis, grid, root), scale)
         first = np.array([[0.0, 0.0, 1.0]])
         carried = running_product(
             _turns(
@@ -102,7 +104,7 @@ class PlacedSlopes:
         own = carried[
             np.clip(np.searchsorted(grid, self.placing.eta, side="right") - 1, 0, len(grid) - 1)
         ]
-        end, change = _tangents(direction(axis, self.placing.eta), scale)
+        end, change = _tangents(direction(axis, self.placing.eta, root), scale)
         return own @ _turns(own[:, 2, :3], own[:, 5, :3], end, change)
 
 

@@ -1,6 +1,6 @@
 """Where the sections of many variants of a blade stand: chord, twist, offset, axis."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -85,7 +85,8 @@ class Placing:
         """Return the axis and the frames, which are carried along it; no window touches them."""
         change = AffineChange(prebend_scale=float(prebend_scale))
         axis = change.applied(self.blade.definition, Window()).axis
-        return axis(self.eta), self.blade.planes(axis)(self.eta)
+        frames = replace(self.blade.planform.frames, axis=axis)
+        return axis(self.eta), frames(self.eta)
 
 
 def column(value: ArrayLike) -> Array:

@@ -1,6 +1,5 @@
 """What commands have in common: options and groups of them (`groups`), and what they make."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from bladegen.cli.options.groups import COMMAND
+from bladegen.cli.options.targets import Target, ending_in
 from bladegen.errors import BladegenError
 
 __all__ = [
@@ -67,6 +67,7 @@ class StepSchema(StrEnum):
 class Planes(StrEnum):
     """Which way section planes face."""
 
+    flange = "flange"
     axis = "axis"
     z = "z"
 
@@ -123,38 +124,6 @@ Reynolds = Annotated[
 ]
 
 
-def ending_in(*suffixes: str) -> Callable[[typer.CallbackParam, Path | None], Path | None]:
-    """Return a callback that refuses an output file whose suffix says another kind of file."""
-
-    def checked(param: typer.CallbackParam, value: Path | None) -> Path | None:
-        from bladegen.support.files import require_suffix
-
-        if value is not None:
-            require_suffix(value, suffixes, param.opts[-1])
-        return value
-
-    return checked
-
-
-def _folder(param: typer.CallbackParam, value: Path) -> Path:
-    """Refuse a file's name where a folder is meant."""
-    from bladegen.errors import ExportError
-    from bladegen.exports.registry import FORMATS
-
-    suffix = next((one for one in FORMATS if value.name.lower().endswith(one)), "")
-    if suffix and not value.is_dir():
-        raise ExportError(
-            f"{param.opts[-1]}: got {value}, must be a folder; such as -o {value.parent} "
-            f"--format {suffix.lstrip('.')}"
-        )
-    return value
-
-
-Target = Annotated[
-    Path, typer.Option("-o", "--output", help="Folder for the files.", callback=_folder)
-]
-
-
 @dataclass(frozen=True)
 class Making:
     """How a definition becomes a blade."""
@@ -169,9 +138,11 @@ class Making:
     planes: Annotated[
         Planes,
         typer.Option(
-            case_sensitive=False, help="Section planes normal to the reference axis or to z."
+            case_sensitive=False,
+            help="Section planes: normal to z at the flange and to the reference axis past the "
+            "round root; to the axis all over; or to z all over.",
         ),
-    ] = Planes.axis
+    ] = Planes.flange
     trailing_edge: Annotated[
         str,
         typer.Option(

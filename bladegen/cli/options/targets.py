@@ -1,0 +1,41 @@
+"""Where commands write: folders and files, refused if their names say another kind of file."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["Target", "ending_in"]
+
+
+def ending_in(*suffixes: str) -> Callable[[typer.CallbackParam, Path | None], Path | None]:
+    """Return a callback that refuses an output file whose suffix says another kind of file."""
+
+    def checked(param: typer.CallbackParam, value: Path | None) -> Path | None:
+        from bladegen.support.files import require_suffix
+
+        if value is not None:
+            require_suffix(value, suffixes, param.opts[-1])
+        return value
+
+    return checked
+
+
+def _folder(param: typer.CallbackParam, value: Path) -> Path:
+    """Refuse a file's name where a folder is meant."""
+    from bladegen.errors import ExportError
+    from bladegen.exports.registry import FORMATS
+
+    suffix = next((one for one in FORMATS if value.name.lower().endswith(one)), "")
+    if suffix and not value.is_dir():
+        raise ExportError(
+            f"{param.opts[-1]}: got {value}, must be a folder; such as -o {value.parent} "
+            f"--format {suffix.lstrip('.')}"
+        )
+    return value
+
+
+Target = Annotated[
+    Path, typer.Option("-o", "--output", help="Folder for the files.", callback=_folder)
+]

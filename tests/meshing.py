@@ -17,9 +17,14 @@ from bladegen.support.arrays import Array, Indices
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What gmsh finds: volumes, the box around the first [mm], and the mesh of its faces [mm]."""
+    """What gmsh finds: volumes, the box around the first [mm], and the mesh of its faces [mm].
+
+    Names are those of volumes, colours those of faces, 0 to 255.
+    """
 
     volumes: int
+    names: tuple[str, ...]
+    colours: Indices
     box: Array
     vertices: Array
     faces: Indices
@@ -37,7 +42,13 @@ def found(path: Path, size: float | None = None) -> Found:
     with np.load(target) as held:
         qualities = np.split(held["qualities"], np.cumsum(held["counts"])[:-1])
         return Found(
-            int(held["volumes"]), held["box"], held["vertices"], held["faces"], tuple(qualities)
+            len(held["names"]),
+            tuple(held["names"].tolist()),
+            held["colours"],
+            held["box"],
+            held["vertices"],
+            held["faces"],
+            tuple(qualities),
         )
 
 
@@ -47,6 +58,7 @@ def main(path: str, target: str, size: str = "") -> None:
 
     gmsh.initialize(interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
     gmsh.model.occ.importShapes(path)
     gmsh.model.occ.synchronize()
     volumes = gmsh.model.getEntities(3)
@@ -66,7 +78,8 @@ def main(path: str, target: str, size: str = "") -> None:
             qualities.append(np.array(gmsh.model.mesh.getElementQualities(elements, "gamma")))
     np.savez(
         target,
-        volumes=len(volumes),
+        names=[gmsh.model.getEntityName(*volume) for volume in volumes],
+        colours=[gmsh.model.getColor(*face)[:3] for face in gmsh.model.getEntities(2)],
         box=box,
         vertices=points.reshape(-1, 3),
         faces=np.concatenate(faces),

@@ -8,7 +8,7 @@ from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
 
 from bladegen.blade.blade import Blade
-from bladegen.cad import exchange, shapes, solids
+from bladegen.cad import exchange, occt, shapes, solids
 from bladegen.cad.solids import Solid
 from bladegen.cad.triangles import triangulated
 from bladegen.errors import CadError
@@ -107,7 +107,7 @@ def setting():
 @pytest.mark.parametrize("unit", ["INCH", "FT", "M", "CM", "MM", "UM"])
 def test_files_are_read_in_their_own_unit(box, tmp_path, setting, unit):
     setting("write.step.unit", unit)
-    with exchange._quietly():
+    with occt.quietly():
         step = STEPControl_Writer()
         step.Transfer(box.shape, STEPControl_AsIs)
         step.Write(str(tmp_path / "a.step"))
@@ -135,7 +135,7 @@ def test_the_unit_of_others_in_the_process_changes_nothing(box, tmp_path, settin
 
 def test_check_takes_a_file_in_inches_for_what_it_is(box, tmp_path, setting):
     setting("write.step.unit", "INCH")
-    with exchange._quietly():
+    with occt.quietly():
         step = STEPControl_Writer()
         step.Transfer(box.shape, STEPControl_AsIs)
         step.Write(str(tmp_path / "a.step"))

@@ -15,7 +15,6 @@ from bladegen.support.files import (
     content_of,
     folder,
     replacing,
-    require_end,
     safe_stem,
 )
 
@@ -130,22 +129,6 @@ def test_a_lock_that_its_holder_took_away_is_made_anew(tmp_path, monkeypatch):
     with alone(tmp_path, "blade"):
         assert (tmp_path / ".blade.lock").exists()
     assert len(tried) == 2
-
-
-def test_a_file_that_ends_early_is_a_full_disk(tmp_path):
-    target = tmp_path / "a.vtp"
-
-    def write(content):
-        with replacing(target) as temporary:
-            temporary.write_bytes(content)
-            require_end(temporary, b"</VTKFile>")
-
-    write(b"<VTKFile>" + bytes(999) + b"</VTKFile>\n")
-    whole = target.read_bytes()
-    for content in (b"", b"</VTKFile>" + bytes(999)):
-        with pytest.raises(ExportError, match="ends early"):
-            write(content)
-    assert target.read_bytes() == whole
 
 
 def test_only_regular_files_are_read_and_no_more_than_is_asked_for(tmp_path):

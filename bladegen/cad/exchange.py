@@ -6,20 +6,22 @@ when first needed.
 """
 
 import io
-import os
 import re
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from datetime import UTC, datetime
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from bladegen.cad import step_documents
+from bladegen.cad.occt import in_millimetres, quietly, save, time_of
 from bladegen.cad.solids import Solid
+from bladegen.cad.step_documents import NOBODY, STEP_SCHEMAS, Author
 from bladegen.errors import CadError
+from bladegen.version import __version__
 
 __all__ = [
     "READERS",
     "STEP_SCHEMAS",
+    "Author",
     "read",
     "read_brep",
     "read_iges",
@@ -29,13 +31,16 @@ __all__ = [
     "write_step",
 ]
 
-STEP_SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS"}  # and what OCCT calls them
-MEMORY_UNIT = "xstep.cascade.unit"  # what OCCT calls the unit of shapes in memory
 SOLIDS_MODE = 1  # of OCCT's IGES writer: manifold solids (entity 186), not loose trimmed faces
 
 
 def write_step(
-    solid: Solid, path: Path, *, schema: str = "ap242", timestamp: str | None = None
+    solid: Solid,
+    path: Path,
+    *,
+    schema: str = "ap242",
+    timestamp: str | None = None,
+    author: Author = NOBODY,
 ) -> None:
     """Write a solid as STEP in millimetres, its faces named, in a schema of `STEP_SCHEMAS`.
 
@@ -47,35 +52,7 @@ def write_step(
     CadError
         If OCCT cannot write the file.
     """
-    from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
-    from OCP.Interface import Interface_Static
-    from OCP.STEPConstruct import STEPConstruct
-    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
-    from OCP.TCollection import TCollection_HAsciiString
-
-    with _quietly(), _in_millimetres():
-        STEPControl_Controller.Init_s()  # before it, the settings below have no effect
-        for setting, value in (
-            ("write.step.schema", STEP_SCHEMAS[schema]),
-            ("write.step.unit", "MM"),
-        ):
-            if not Interface_Static.SetCVal_s(setting, value):
-                raise CadError(f"{path}: OCCT does not take {setting} = {value}")
-        writer = STEPControl_Writer()
-        writer.Transfer(solid.shape, STEPControl_AsIs)
-        process = writer.WS().TransferWriter().FinderProcess()
-        for name, face in solid.faces:
-            STEPConstruct.FindEntity_s(process, face).SetName(TCollection_HAsciiString(name))
-        _name_product(writer.Model(), _ascii(solid.name))
-        timestamp = timestamp or _source_date()
-        if timestamp is not None:
-            header = APIHeaderSection_MakeHeader(writer.Model())
-            header.SetTimeStamp(TCollection_HAsciiString(timestamp))
-        content = io.BytesIO()
-        status = writer.WriteStream(content)
-    if status.name != "IFSelect_RetDone":
-        raise CadError(f"{path}: OCCT could not write the STEP file ({status.name})")
-    _write(path, content)
+    step_documents.write(solid.part, path, schema=schema, timestamp=timestamp, author=author)
 
 
 def read_step(path: Path) -> Any:
@@ -91,7 +68,9 @@ def read_step(path: Path) -> Any:
     return _transferred(STEPControl_Reader, path, "a STEP file")
 
 
-def write_iges(solid: Solid, path: Path, *, timestamp: str | None = None) -> None:
+def write_iges(
+    solid: Solid, path: Path, *, timestamp: str | None = None, author: Author = NOBODY
+) -> None:
     """Write a solid as IGES 5.3 in millimetres, one manifold solid B-rep (entity 186).
 
     The times in its header are those of `write_step`.
@@ -102,24 +81,36 @@ def write_iges(solid: Solid, path: Path, *, timestamp: str | None = None) -> Non
         If OCCT cannot write the file.
     """
     from OCP.IGESControl import IGESControl_Controller, IGESControl_Writer
-    from OCP.TCollection import TCollection_HAsciiString
 
-    timestamp = timestamp or _source_date()
-    with _quietly(), _in_millimetres():
+    when = re.sub("[-:]", "", time_of(timestamp)).replace("T", ".")
+    with quietly(), in_millimetres():
         IGESControl_Controller.Init_s()
         writer = IGESControl_Writer("MM", SOLIDS_MODE)
         if not writer.AddShape(solid.shape):
             raise CadError(f"{path}: OCCT could not turn the solid into IGES")
         writer.ComputeModel()
-        if timestamp is not None:
-            header = writer.Model().ChangeGlobalSection()
-            when = TCollection_HAsciiString(re.sub("[-:]", "", timestamp).replace("T", "."))
-            header.SetDate(when)
-            header.SetLastChangeDate(when)
+        _fill_global(writer.Model().ChangeGlobalSection(), solid.name, when, author)
         content = io.BytesIO()
         if not writer.Write(content):
             raise CadError(f"{path}: OCCT could not write the IGES file")
-    _write(path, content)
+    save(path, content)
+
+
+def _fill_global(section: Any, name: str, when: str, author: Author) -> None:
+    """Say in an IGES file's global section what and whose it is, not who was logged in."""
+    from OCP.TCollection import TCollection_HAsciiString
+
+    for put, words in (
+        (section.SetSendName, name),
+        (section.SetReceiveName, name),
+        (section.SetFileName, f"{name}.iges"),
+        (section.SetSystemId, f"bladegen {__version__}"),
+        (section.SetDate, when),
+        (section.SetLastChangeDate, when),
+        (section.SetAuthorName, author.name),
+        (section.SetCompanyName, author.organisation),
+    ):
+        put(TCollection_HAsciiString(_ascii(words)))
 
 
 def read_iges(path: Path) -> Any:
@@ -137,7 +128,7 @@ def read_iges(path: Path) -> Any:
 
 def _transferred(control: Callable[[], Any], path: Path, what: str) -> Any:
     """Return the shape that a reader of OCCT's makes of a file."""
-    with _quietly(), _in_millimetres():
+    with quietly(), in_millimetres():
         reader = control()
         if reader.ReadFile(str(path)).name != "IFSelect_RetDone" or not reader.TransferRoots():
             raise CadError(f"{path}: not {what} that OCCT can read")
@@ -158,7 +149,7 @@ def write_brep(solid: Solid, path: Path) -> None:
     version = TopTools_FormatVersion.TopTools_FormatVersion_CURRENT
     content = io.BytesIO()
     BRepTools.Write_s(solid.shape, content, False, False, version)
-    _write(path, content)
+    save(path, content)
 
 
 def read_brep(path: Path) -> Any:
@@ -193,68 +184,6 @@ def read(path: Path) -> Any:
     return READERS[path.suffix.lower()](path)
 
 
-def _name_product(model: Any, name: str) -> None:
-    """Name a STEP model's product; OCCT would add how many it has written before."""
-    from OCP.StepBasic import StepBasic_Product
-    from OCP.TCollection import TCollection_HAsciiString
-
-    for i in range(1, model.NbEntities() + 1):
-        entity = model.Value(i)
-        if isinstance(entity, StepBasic_Product):
-            entity.SetId(TCollection_HAsciiString(name))
-            entity.SetName(TCollection_HAsciiString(name))
-
-
-def _write(path: Path, content: io.BytesIO) -> None:
-    """Write what OCCT made in memory: it does not notice a full disk, Python does."""
-    if not path.parent.is_dir():
-        raise CadError(f"{path}: could not write: there is no folder {path.parent}")
-    path.write_bytes(content.getbuffer())
-
-
-def _source_date() -> str | None:
-    """Return the time that reproducible-builds.org's SOURCE_DATE_EPOCH asks for, or None."""
-    seconds = os.environ.get("SOURCE_DATE_EPOCH")
-    if seconds is None or not seconds.isdigit():
-        return None
-    try:
-        when = datetime.fromtimestamp(int(seconds), UTC)
-    except (ValueError, OverflowError, OSError):
-        raise CadError(f"SOURCE_DATE_EPOCH: got {seconds}, which is no time of this era") from None
-    return when.strftime("%Y-%m-%dT%H:%M:%S")
-
-
 def _ascii(text: str) -> str:
-    """Return text as STEP files hold it."""
+    """Return text as IGES files hold it."""
     return text.encode("ascii", "replace").decode("ascii")
-
-
-@contextmanager
-def _in_millimetres() -> Iterator[None]:
-    """Have OCCT take shapes in memory as millimetres, whatever else set it to in this process."""
-    from OCP.Interface import Interface_Static
-    from OCP.STEPControl import STEPControl_Controller
-
-    STEPControl_Controller.Init_s()  # before it, there is no such setting
-    before = Interface_Static.CVal_s(MEMORY_UNIT)
-    Interface_Static.SetCVal_s(MEMORY_UNIT, "MM")
-    try:
-        yield
-    finally:
-        Interface_Static.SetCVal_s(MEMORY_UNIT, before)
-
-
-@contextmanager
-def _quietly() -> Iterator[None]:
-    """Keep OCCT's remarks off the terminal; its failures are checked for."""
-    from OCP.Message import Message, Message_Gravity
-
-    printers = Message.DefaultMessenger_s().Printers()
-    levels = [printer.GetTraceLevel() for printer in printers]
-    for printer in printers:
-        printer.SetTraceLevel(Message_Gravity.Message_Fail)
-    try:
-        yield
-    finally:
-        for printer, level in zip(printers, levels, strict=True):
-            printer.SetTraceLevel(level)

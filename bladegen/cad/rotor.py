@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.cad import step_documents
 from bladegen.cad.shapes import MILLIMETRES
 from bladegen.cad.solids import Solid
+from bladegen.cad.step_documents import NOBODY, Author, Part, Place
 from bladegen.cad.triangles import triangulated
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array
-from bladegen.support.files import require_end
 from bladegen.surface.mesh import TriangleMesh
 from bladegen.surface.mesh_files import assembled
 
@@ -134,32 +135,59 @@ def rotor_of(
     return Rotor(facts.blades, facts.hub_radius, facts.cone or 0.0, radius, mirrored)
 
 
-def write_step(rotor: Rotor, solid: Solid, path: Path) -> None:
-    """Write a rotor as one STEP assembly with named parts: blade 1, blade 2, ..., spinner.
+def write_step(
+    rotor: Rotor,
+    solid: Solid,
+    path: Path,
+    *,
+    schema: str = "ap242",
+    timestamp: str | None = None,
+    author: Author = NOBODY,
+) -> None:
+    """Write a rotor as one STEP assembly: the blade's part as blade 1, blade 2, ..., and spinner.
+
+    Options are those of `exchange.write_step`.
 
     Raises
     ------
     CadError
         If OCCT cannot write the file.
     """
-    import cadquery as cq
+    from OCP.TopLoc import TopLoc_Location
 
-    part = cq.Solid(solid.shape)
-    if rotor.mirrored:
-        part = part.mirror("XZ")
-    assembly = cq.Assembly(name=f"{solid.name} rotor")
-    rotations, shifts = rotor.placements()
-    for number, (rotation, shift) in enumerate(zip(rotations, shifts, strict=True), start=1):
-        plane = cq.Plane(
-            origin=tuple((shift * MILLIMETRES).tolist()),
-            xDir=tuple(rotation[:, 0].tolist()),
-            normal=tuple(rotation[:, 2].tolist()),
-        )
-        assembly.add(part, name=f"blade {number}", loc=cq.Location(plane))
-    assembly.add(_spinner(rotor.spinner_radius), name="spinner")
-    if not assembly.export(str(path), exportType="STEP"):
-        raise CadError(f"{path}: OCCT could not write the assembly")
-    require_end(path, b"END-ISO-10303-21;")
+    blade = _mirrored(solid.part) if rotor.mirrored else solid.part
+    places = [
+        Place(f"blade {number}", blade, _location(rotation, shift))
+        for number, (rotation, shift) in enumerate(zip(*rotor.placements(), strict=True), start=1)
+    ]
+    spinner = Part("spinner", _spinner(rotor.spinner_radius).wrapped)
+    places.append(Place("spinner", spinner, TopLoc_Location()))
+    step_documents.write(
+        (f"{solid.name} rotor", places), path, schema=schema, timestamp=timestamp, author=author
+    )
+
+
+def _location(rotation: Array, shift: Array) -> Any:
+    """Return where points ``p @ rotation.T + shift`` are, the shift in metres, as OCCT has it."""
+    from OCP.gp import gp_Trsf
+    from OCP.TopLoc import TopLoc_Location
+
+    move = gp_Trsf()
+    rows = np.concatenate([rotation, shift[:, None] * MILLIMETRES], axis=1)
+    move.SetValues(*rows.ravel().tolist())
+    return TopLoc_Location(move)
+
+
+def _mirrored(part: Part) -> Part:
+    """Return a part mirrored in y, under the same names."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf
+
+    mirror = gp_Trsf()
+    mirror.SetMirror(gp_Ax2(gp_Pnt(), gp_Dir(0.0, 1.0, 0.0)))
+    made = BRepBuilderAPI_Transform(part.shape, mirror, True)
+    pieces = [(name, made.ModifiedShape(face), colour) for name, face, colour in part.pieces]
+    return Part(part.name, made.Shape(), pieces)
 
 
 def write_glb(rotor: Rotor, mesh: TriangleMesh, path: Path) -> None:

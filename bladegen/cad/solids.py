@@ -15,12 +15,14 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.cad.shapes import MILLIMETRES, area, is_valid
+from bladegen.cad.step_documents import Part
 from bladegen.errors import CadError, visible
 from bladegen.support.arrays import Array
 from bladegen.surface.deviation import Deviation
 from bladegen.surface.ends import edge_poles, measured, rounded, tip_volume
 from bladegen.surface.fitting import fitted
 from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet
+from bladegen.surface.regions import EDGE, ROOT, TIP, TIP_EDGE, colour
 from bladegen.surface.tips import Tip, flat_tip
 
 __all__ = ["DEFAULT_TOLERANCE", "Solid", "solid"]
@@ -70,6 +72,11 @@ class Solid:
     def area(self) -> float:
         """Surface area [m2], by OCCT."""
         return area(self.shape) / MILLIMETRES**2
+
+    @property
+    def part(self) -> Part:
+        """The solid under its name, its faces named and in the colours of their regions."""
+        return Part(self.name, self.shape, [(n, face, colour(n)) for n, face in self.faces])
 
     def workplane(self) -> Any:
         """Return the solid as a cadquery.Workplane [mm], to go on from in CadQuery."""
@@ -136,8 +143,8 @@ def solid(
     faces = list(zip(blade.sides, halves, strict=True))
     if blunt:
         strip = np.stack([scaled.poles[-1], scaled.poles[0]])
-        faces.append(("trailing edge", _face(_surface(strip, _LINEAR, net.v_knots))))
-    faces += [("root", _cap(scaled, 0.0, blunt)), *_tip_faces(scaled, blunt, tip)]
+        faces.append((EDGE, _face(_surface(strip, _LINEAR, net.v_knots))))
+    faces += [(ROOT, _cap(scaled, 0.0, blunt)), *_tip_faces(scaled, blunt, tip)]
     shape, named = _closed(faces, blade.name)
     return Solid(shape, named, net, deviation, tip_volume(net, tip), blade.name)
 
@@ -210,11 +217,11 @@ def _tip_faces(net: SurfaceNet, blunt: bool, tip: Tip) -> list[tuple[str, Any]]:
     """Make the faces that close the tip: a plane, or the spline through the tip's arcs."""
     poles = rounded(net, tip)
     if poles is None:
-        return [("tip", _cap(net, 1.0, blunt))]
-    faces = [("tip", _face(_surface(poles, net.halves()[0].u_knots, BEZIER)))]
+        return [(TIP, _cap(net, 1.0, blunt))]
+    faces = [(TIP, _face(_surface(poles, net.halves()[0].u_knots, BEZIER)))]
     if blunt:
         edge = _surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
-        faces.append(("tip trailing edge", _face(edge)))
+        faces.append((TIP_EDGE, _face(edge)))
     return faces
 
 

@@ -173,7 +173,8 @@ def _rotor(rotor: Rotor, products: Products, stem: Path, ledger: Ledger) -> Prom
         )
     )
     with ledger.timed("rotor"), marks.marked(made, solid) as temporary:
-        write_step(rotor, products.solid, temporary)
+        options = products.options
+        write_step(rotor, products.solid, temporary, schema=options.step_schema, **options.told)
     try:
         exporters.require_size(products, made)
     except PromiseError as error:

@@ -33,6 +33,8 @@ def export(
     unit: str = Options.unit,
     step_schema: str = Options.step_schema,
     timestamp: str | None = None,
+    author: str = Options.author,
+    organisation: str = Options.organisation,
     largest: int | None = None,
     spans: "Array | None" = None,
     spacing: grid.Spacing | None = None,
@@ -64,6 +66,10 @@ def export(
         STEP: "ap242" or "ap214".
     timestamp : str, optional
         STEP and IGES: the time in the header, ISO 8601, instead of now.
+    author : str
+        STEP and IGES: who the file says made it; nobody if not given.
+    organisation : str
+        The author's, in the same files.
     largest : int, optional
         Solids: the most bytes that a file may take.
     spans : (k,) array, optional
@@ -105,6 +111,8 @@ def export(
         "unit": unit,
         "step_schema": step_schema,
         "timestamp": timestamp,
+        "author": author,
+        "organisation": organisation,
         "largest": largest,
         "spans": spans,
         "spacing": grid.Spacing() if spacing is None else spacing,

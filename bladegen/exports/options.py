@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
-from bladegen.cad import exchange, solids
+from bladegen.cad import exchange, solids, step_documents
 from bladegen.errors import ExportError
 from bladegen.exports.provenance import word
 from bladegen.support.arguments import amount, function, instance, one_of, suggestion, whole
@@ -54,6 +54,8 @@ class Options:
         STEP: "ap242" or "ap214".
     timestamp : str, optional
         STEP and IGES: the time in the header, ISO 8601, instead of now.
+    author, organisation : str
+        STEP and IGES: who the file says made it; nobody if not given.
     command : str
         What was typed, for files to say; without folders and without what changes no file.
     largest : int, optional
@@ -73,6 +75,8 @@ class Options:
     unit: str = "m"
     step_schema: str = "ap242"
     timestamp: str | None = None
+    author: str = ""
+    organisation: str = ""
     largest: int | None = None
     spans: Array | None = None
     spacing: grid.Spacing = field(default_factory=grid.Spacing)
@@ -93,6 +97,9 @@ class Options:
         whole(self.stations, "stations", ExportError)
         if self.sections is not None:
             whole(self.sections, "sections", ExportError)
+        for name in ("author", "organisation"):
+            must = "text, such as 'Ada Lovelace'"
+            instance(getattr(self, name), str, name, must, ExportError)
         function(self.tip, "tip", "bladegen.surface.tips.flat_tip or round_tip", ExportError)
         must = "a bladegen.surface.grids.grid.Spacing"
         instance(self.spacing, grid.Spacing, "spacing", must, ExportError)
@@ -109,6 +116,9 @@ class Options:
                 found["solid_sections"] = word(self.sections)
             if suffix in (".step", ".stp"):
                 found["schema"] = self.step_schema
+            if suffix != ".brep":  # which has no place for it
+                told = {"author": self.author, "organisation": self.organisation}
+                found |= {key: word(value) for key, value in told.items() if value}
         if kind is Kind.grid:
             found |= {f"grid_{key}": word(value) for key, value in asdict(self.spacing).items()}
         if kind in (Kind.triangles, Kind.table):
@@ -121,6 +131,12 @@ class Options:
             given = {"polars": self.polars, "reynolds": self.reynolds}
             found |= {key: word(value) for key, value in given.items() if value is not None}
         return found
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What writers of CAD files are told of time and author."""
+        author = step_documents.Author(self.author, self.organisation)
+        return {"timestamp": self.timestamp, "author": author}
 
     @classmethod
     def named(cls, given: Mapping[str, Any]) -> "Options":

@@ -57,13 +57,11 @@ class Format:
 
 def _write_step(products: Products, path: Path) -> None:
     options = products.options
-    exchange.write_step(
-        products.solid, path, schema=options.step_schema, timestamp=options.timestamp
-    )
+    exchange.write_step(products.solid, path, schema=options.step_schema, **options.told)
 
 
 def _write_iges(products: Products, path: Path) -> None:
-    exchange.write_iges(products.solid, path, timestamp=products.options.timestamp)
+    exchange.write_iges(products.solid, path, **products.options.told)
 
 
 def _write_brep(products: Products, path: Path) -> None:

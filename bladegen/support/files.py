@@ -26,13 +26,11 @@ __all__ = [
     "end_of",
     "folder",
     "replacing",
-    "require_end",
     "require_suffix",
     "safe_stem",
 ]
 
 RETRY = 0.2  # seconds in which a lock whose file was taken away is made anew
-END_SLACK = 8  # bytes of line ends behind the last word
 
 logger = logging.getLogger(__name__)
 
@@ -172,20 +170,6 @@ def digest_of(path: Path) -> str:
     """Return the SHA-256 of a file as hex digits."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def require_end(path: Path, mark: bytes) -> None:
-    """See that a file that a library wrote ends as it must; not all notice a full disk.
-
-    Raises
-    ------
-    OSError
-        If it does not, which `replacing` turns into an `ExportError`.
-    """
-    with path.open("rb") as stream:
-        stream.seek(max(0, path.stat().st_size - len(mark) - END_SLACK))
-        if mark not in stream.read():
-            raise OSError(errno.ENOSPC, "the file ends early, is the disk full?")
 
 
 def require_suffix(path: Path, allowed: Sequence[str], field: str = "output") -> None:

@@ -205,6 +205,12 @@ class Producing:
         StepSchema,
         typer.Option(case_sensitive=False, help="Schema of STEP files."),
     ] = StepSchema.ap242
+    author: Annotated[
+        str, typer.Option(metavar="NAME", help="Whom STEP and IGES files name; nobody by default.")
+    ] = ""
+    organisation: Annotated[
+        str, typer.Option(metavar="NAME", help="The author's, in the same files.")
+    ] = ""
     grid_around: Annotated[
         int, typer.Option(help="Points around a section, odd.", rich_help_panel=GRIDS)
     ] = 257
@@ -238,6 +244,8 @@ class Producing:
             largest=LIGHT_BYTES if self.light else None,
             command=COMMAND.get(),
             step_schema=self.step,
+            author=self.author,
+            organisation=self.organisation,
             stations=self.stations,
             tip=TIPS[self.tip],
             unit=self.unit,

@@ -50,28 +50,32 @@ new MutationObserver(() => {
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
-@pytest.fixture(scope="module")
-def patient():
-    """Let a tab that a busy machine keeps away come back, instead of loading its page anew."""
+@pytest.fixture(scope="session")
+def address():
+    """The address of a studio that is served on a thread, once in a process.
+
+    It lets a tab that a busy machine keeps away come back, instead of loading its page anew.
+    """
+    served, began = [], threading.Event()
+
+    def told(serving):
+        served.append(serving)
+        began.set()
+
+    def run():
+        try:
+            serve("nrel5mw", "127.0.0.1", 0, told)
+        finally:
+            began.set()
+
+    thread = threading.Thread(target=run, daemon=True)
     with pytest.MonkeyPatch.context() as patch:
         for name in ("RECONNECT", "PREPARING"):
             patch.setattr(server, name, WAIT / 1000)
         patch.setattr(Visits.__init__, "__defaults__", (MOST, WAIT / 1000))
-        yield
-
-
-@pytest.fixture(scope="module")
-def address(patient):
-    """The address of a studio that is served on a thread."""
-    served, ready = [], threading.Event()
-
-    def told(serving):
-        served.append(serving)
-        ready.set()
-
-    thread = threading.Thread(target=serve, args=("nrel5mw", "127.0.0.1", 0, told), daemon=True)
-    thread.start()
-    assert ready.wait(WAIT / 1000)
+        thread.start()
+        assert began.wait(WAIT / 1000)
+    assert served, "the studio could not be served"
     yield served[0].address
     served[0].stop()
     thread.join(WAIT / 1000)
@@ -112,6 +116,11 @@ def opened(browser, address):
     for context in contexts:
         context.close()
     assert said == []
+
+
+def test_a_second_studio_in_a_process_is_refused(address):
+    with pytest.raises(StudioError, match=r"^serves one studio a process, .* start another one$"):
+        serve("nrel5mw", "127.0.0.1", 0)
 
 
 def drawn(tab, least):

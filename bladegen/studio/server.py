@@ -28,6 +28,7 @@ ENVELOPE = 2**18  # bytes around the files of an upload
 HISTORY = 30  # messages kept for a tab that reconnects
 RECONNECT = 15.0  # s that a tab may be away
 PREPARING = 60.0  # s that a blade may take before its page is given up
+_FIRST = threading.Lock()  # taken by the process's only studio
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,8 @@ def serve(
     FileError
         If `source` is no blade.
     StudioError
-        If the web framework is not installed, or there is no such place to listen.
+        If the web framework is not installed, there is no such place to listen, or this process
+        has served a studio before: NiceGUI's application can be mounted once.
     """
     with TemporaryDirectory(prefix="bladegen-studio-") as name:
         folder = Path(name)
@@ -126,6 +128,10 @@ def serve(
         token = None if is_loopback(host) else token_urlsafe(18)
         # small matrices: more threads only wait for each other
         with threadpool_limits(1), bound(host, port) as sock:
+            if not _FIRST.acquire(blocking=False):
+                raise StudioError(
+                    "serves one studio a process, and this process has had one; start another one"
+                )
             app = Guard(_application(studio), token, UPLOAD_BYTES + ENVELOPE)
             config = uvicorn.Config(
                 app, log_level="warning", lifespan="on", timeout_graceful_shutdown=2

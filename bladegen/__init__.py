@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         Rotor,
         Station,
     )
+    from bladegen.definition.fair_planform import PlanformFairing
     from bladegen.errors import BladegenError, Finding
     from bladegen.exports.definitions import write
     from bladegen.exports.exporters import export
@@ -50,6 +51,7 @@ _HOME = {
     "Family": "families.family",
     "Finding": "errors",
     "ParametricBlade": "parametric.model",
+    "PlanformFairing": "definition.fair_planform",
     "ReferenceAxis": "definition.blade_definition",
     "Rotor": "definition.blade_definition",
     "ShapeSpace": "shapes.shape_space",
@@ -73,6 +75,7 @@ __all__ = [
     "Family",
     "Finding",
     "ParametricBlade",
+    "PlanformFairing",
     "ReferenceAxis",
     "Rotor",
     "ShapeSpace",

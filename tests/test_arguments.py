@@ -69,7 +69,15 @@ CALLS = {
     "from_definition": bg.Blade.from_definition,
     **{
         f"from_definition {name}": lambda x, n=name: bg.Blade.from_definition(DEFINITION, **{n: x})
-        for name in ("landmarks", "path", "planes", "trailing_edge", "spacing", "fairing")
+        for name in (
+            "landmarks",
+            "path",
+            "planes",
+            "trailing_edge",
+            "spacing",
+            "fairing",
+            "fair_planform",
+        )
     },
     "perturbed space": BLADE.perturbed,
     "perturbed t": lambda x: BLADE.perturbed(SPACE, x),

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cli import commands
-from bladegen.cli.options import common, parsing
+from bladegen.cli.options import common, fairing, parsing
 from bladegen.cli.options.slips import instead_of
 from bladegen.errors import BladegenError
 
@@ -165,7 +165,7 @@ def typed(tmp_path, monkeypatch):
     def blade(making, source, *_):
         if source not in bg.bundled():
             return bg.read(source)
-        parsing.chord_share(making.fairing, "fairing")
+        fairing.chord_share(making.fairing, "fairing")
         return BLADE.with_trailing_edge(parsing.finish(making.trailing_edge))
 
     monkeypatch.setattr(common.Making, "blade", blade)

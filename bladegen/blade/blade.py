@@ -10,8 +10,6 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, Unpack
 
-import numpy as np
-
 from bladegen.airfoils.chord_lines import KEPT
 from bladegen.airfoils.fairing import TOLERANCE
 from bladegen.airfoils.landmarks import Spacing, clustered
@@ -25,10 +23,11 @@ from bladegen.blade.planform import Planform, SectionPlanes, flange_to_axis
 from bladegen.blade.shape import Shape
 from bladegen.blade.soundness import Trial, leaving
 from bladegen.blade.spans import MIRROR, around, reflected, span_fractions
+from bladegen.definition import fair_planform as fair
 from bladegen.definition.blade_definition import BladeDefinition, Distribution
 from bladegen.errors import DefinitionError, Finding, visible
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.support.arguments import function, whole
+from bladegen.support.arguments import function
 from bladegen.support.arrays import Array, ArrayLike
 from bladegen.support.values import state_of
 
@@ -66,6 +65,7 @@ class Blade:
     mirrored: bool
 
     definition, planes = parts.definition, parts.planes
+    fair_planform = parts.fair_planform
     u, eta, representatives = parts.u, parts.eta, parts.representatives
     M, b, contours, fairing = parts.M, parts.b, parts.contours, parts.fairing
     path, edge_width, parameter = parts.path, parts.edge_width, parts.parameter
@@ -97,6 +97,7 @@ class Blade:
         )
 
     plot, mesh, export, point = outputs.plot, outputs.mesh, outputs.export, outputs.point
+    stations = outputs.stations
     volume, _repr_html_ = cached_property(outputs.volume), outputs.html
     _crowding = cached_property(outputs.crowding)
 
@@ -111,6 +112,7 @@ class Blade:
         trailing_edge: TrailingEdge = MINIMUM_EDGE,
         spacing: Spacing = clustered,
         fairing: float | None = TOLERANCE,
+        fair_planform: fair.PlanformFairing | None = None,
     ) -> Blade:
         """Build a blade from its definition.
 
@@ -130,14 +132,19 @@ class Blade:
         fairing : float, optional
             Largest distance of an airfoil's given points to its curve [chord], within which
             noise of their digits is taken out; None keeps the points.
+        fair_planform : PlanformFairing, optional
+            How far chord, twist, offsets and axis may move to be C2; None keeps them.
 
         A `DefinitionError` says which argument is of another kind, a `GeometryError` which
         airfoil is unusable.
         """
         must = "such as bladegen.blade.edges.MinimumThickness(0.002)"
         function(trailing_edge, "trailing_edge", must, DefinitionError)
+        if fair_planform is not None:
+            definition = fair.fair_planform(definition, fair_planform)
         definition, loft, findings = lofted(definition, landmarks, path, spacing, fairing)
-        return cls(Shape(loft), Planform(definition, planes), trailing_edge, findings)
+        planform = Planform(definition, planes, fair_planform)
+        return cls(Shape(loft), planform, trailing_edge, findings)
 
     @property
     def name(self) -> str:
@@ -206,14 +213,6 @@ class Blade:
     def mirror_image(self) -> Blade:
         """Return the blade with `sections` and `axis` mirrored in y: its trailing edge at -y."""
         return replace(self, mirrored=not self.mirrored)
-
-    def stations(self, count: int = 120) -> Array:
-        """Return span fractions (count,) that resolve shape, planform and axis, increasing.
-
-        The root, the tip and the definition's are among them, others crowd where the surface bends.
-        """
-        fixed = np.unique(np.concatenate([[0.0], self.eta, [1.0]]))
-        return self._crowding.spans(fixed, whole(count, "stations", DefinitionError))
 
     def perturbed(
         self,

@@ -15,14 +15,15 @@ import numpy as np
 from bladegen.blade.crowding import Crowding
 from bladegen.blade.edges import PAIRWISE
 from bladegen.blade.spans import both_sides, landmarks_at, span_fractions
-from bladegen.errors import GeometryError
+from bladegen.errors import DefinitionError, GeometryError
+from bladegen.support.arguments import whole
 from bladegen.support.arrays import Array, ArrayLike, Indices
 from bladegen.support.services import service, shown_by
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
-__all__ = ["crowding", "export", "html", "mesh", "plot", "point", "volume"]
+__all__ = ["crowding", "export", "html", "mesh", "plot", "point", "stations", "volume"]
 
 Tip = Callable[..., Any]
 
@@ -83,6 +84,16 @@ def point(blade: Any, eta: ArrayLike, u: ArrayLike) -> Array:
     symmetric, column = both_sides(places)
     points: Array = blade.sections(own, symmetric)[row.reshape(spans.shape), column]
     return points
+
+
+def stations(blade: Any, count: int = 120) -> Array:
+    """Return span fractions (count,) that resolve shape, planform and axis, increasing.
+
+    The root, the tip and the definition's are among them, others crowd where the surface bends.
+    """
+    fixed = np.unique(np.concatenate([[0.0], blade.eta, [1.0]]))
+    found: Array = blade._crowding.spans(fixed, whole(count, "stations", DefinitionError))
+    return found
 
 
 def crowding(blade: Any) -> Crowding:

@@ -13,6 +13,7 @@ from bladegen.blade.lofting.paths import Parameter, Path, PathMaker
 from bladegen.blade.planform import Planform, SectionPlanes
 from bladegen.blade.shape import Shape
 from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.definition.fair_planform import PlanformFairing
 from bladegen.support.arrays import Array
 from bladegen.support.values import Part
 
@@ -20,6 +21,9 @@ __all__ = ["composed"]
 
 definition = Part[BladeDefinition]("planform.definition", "What the designer gave.")
 planes = Part[SectionPlanes]("planform.planes", "Section planes.")
+fair_planform = Part[PlanformFairing | None](
+    "planform.fair_planform", "How far chord, twist, offsets and axis moved to be C2, if they did."
+)
 u = Part[Array]("shape.loft.u", "Landmark parameters (n,); 0.5 is the leading edge.")
 eta = Part[Array]("shape.loft.eta", "Span fractions (s,) of the stations.")
 representatives = Part[Array]("shape.loft.representatives", "Stations' bases (s, n, 2).")

@@ -27,6 +27,7 @@ import numpy as np
 
 from bladegen.blade.changes.window import Window
 from bladegen.definition.blade_definition import BladeDefinition, ReferenceAxis
+from bladegen.definition.fair_planform import PlanformFairing
 from bladegen.errors import DefinitionError
 from bladegen.support.arguments import function
 from bladegen.support.arrays import Array
@@ -207,6 +208,8 @@ class Planform:
         The distributions.
     planes : callable
         Section planes: `flange_to_axis`, `normal_to_axis` or `normal_to_z`.
+    fair_planform : PlanformFairing, optional
+        How far the definition's distributions were moved to be C2, if they were.
     frames : AxisFrames, optional
         Section frames (k, 3, 3) as a function of span; those of another planform are kept where
         axis and planes are the same.
@@ -214,6 +217,7 @@ class Planform:
 
     definition: BladeDefinition
     planes: SectionPlanes = flange_to_axis
+    fair_planform: PlanformFairing | None = None
     frames: AxisFrames = field(default=cast(AxisFrames, None), repr=False)
 
     def __post_init__(self) -> None:

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from bladegen.blade.blade import PATHS, Blade
 from bladegen.blade.planform import PLANES
-from bladegen.cli.options.parsing import chord_share, finish
+from bladegen.cli.options.fairing import chord_share, planform_fairing
+from bladegen.cli.options.parsing import finish
 from bladegen.errors import BladegenError
 from bladegen.exports.inventory import made_by
 from bladegen.exports.provenance import Provenance, blade_settings, content_of, made_from, word
@@ -37,8 +38,9 @@ def alike(things: Sequence[Blade | Path]) -> tuple[list[Blade | Path], list[Tip]
     for k, other in ((0, 1), (1, 0)):
         thing, told = things[k], made[other]
         if isinstance(thing, Blade):
-            if told is not None and told.definition == content_of(thing.definition):
-                taken[k] = remade = _remade(thing, told)
+            remade = thing if told is None else _remade(thing, told)
+            if told is not None and told.definition == content_of(remade.definition):
+                taken[k] = remade
                 tip = dict(told.settings).get("tip", "flat")
                 tips[k] = TIPS.get(tip, flat_tip)
                 changed = _changed(thing, remade)
@@ -69,6 +71,7 @@ def _remade(blade: Blade, told: Provenance) -> Blade:
             planes=PLANES.get(how["planes"], blade.planes),
             trailing_edge=finish(how["trailing_edge"]),
             fairing=chord_share(how["fairing"], "fairing"),
+            fair_planform=planform_fairing(how.get("fair_planform", "off"), "fair-planform"),
         )
     except (BladegenError, LookupError, ValueError):
         return blade

@@ -12,7 +12,15 @@ from bladegen.support.arguments import amount, function, numbers
 from bladegen.support.arrays import Array, ArrayLike, readonly
 from bladegen.support.values import equal, hashed
 
-__all__ = ["OVER_SPAN", "SMALLEST_STEP", "Distribution", "Interpolant", "pchip", "united"]
+__all__ = [
+    "OVER_SPAN",
+    "SMALLEST_STEP",
+    "Distribution",
+    "Interpolant",
+    "cubic_spline",
+    "pchip",
+    "united",
+]
 
 OVER_SPAN = "a bladegen.Distribution; Distribution.constant(value) is the same all over"
 SMALLEST_STEP = 1e-9  # of the span from station to station: a tenth of a micrometre
@@ -33,6 +41,14 @@ def pchip(grid: Array, values: Array) -> Interpolant:
 
     with np.errstate(over="ignore"):  # of 1 / slope, where slopes are denormal: they become 0
         interpolant: Interpolant = PchipInterpolator(grid, values)
+    return interpolant
+
+
+def cubic_spline(grid: Array, values: Array) -> Interpolant:
+    """Interpolate by a cubic spline (C2) without knots at the second and the last but one point."""
+    from scipy.interpolate import CubicSpline
+
+    interpolant: Interpolant = CubicSpline(grid, values)
     return interpolant
 
 

@@ -253,6 +253,7 @@ def _settings(blade: Blade, options: Options) -> dict[str, Any]:
         "landmarks": len(blade.u),
         "path": blade.path.__name__,
         "section_planes": blade.planes.__name__,
+        "fair_planform": None if blade.fair_planform is None else str(blade.fair_planform),
         "trailing_edge": str(blade.trailing_edge),
         "mirrored": blade.mirrored,
         "tolerance_mm": options.tolerance * shapes.MILLIMETRES,

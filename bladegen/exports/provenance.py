@@ -39,7 +39,11 @@ __all__ = [
 PLAIN = " ,.:+-_/()[]{}=*~!#@|?"  # beside letters and digits: what no format gives a meaning to
 NAME = "bladegen"  # of entries that have one
 ID_DIGITS = 8  # of a SHA-256
-LONE = ("change", "mirrored")  # settings that are there only if something is changed
+LONE = (
+    "change",
+    "fair_planform",
+    "mirrored",
+)  # settings there only if something is changed
 FACTS = ("blade", "source", "sha256", "definition", "command")
 WORDS = {  # of functions, as the command line calls them
     function.__name__: word for table in (PATHS, PLANES, TIPS) for word, function in table.items()
@@ -193,6 +197,8 @@ def blade_settings(blade: Blade) -> dict[str, str]:
         "trailing_edge": word(blade.trailing_edge),
         "fairing": "off" if blade.fairing is None else word(blade.fairing),
     }
+    if blade.fair_planform is not None:
+        found["fair_planform"] = str(blade.fair_planform)
     if blade.mirrored:
         found["mirrored"] = "yes"
     for number, change in enumerate(blade.changes, start=1):

@@ -159,12 +159,21 @@ class Making:
             "or off.",
         ),
     ] = "1e-5"
+    fair_planform: Annotated[
+        str,
+        typer.Option(
+            metavar="SHARE%[,ANGLE]|off",
+            help="Make chord, twist and axis C2, at most that share of the chord and that angle "
+            "off what is given, such as 0.1%,0.02deg; or off.",
+        ),
+    ] = "off"
 
     def blade(self, source: str, landmarks: int = LANDMARKS) -> Any:
         """Read and build a blade."""
         from bladegen.blade.blade import Blade
         from bladegen.blade.planform import PLANES
-        from bladegen.cli.options.parsing import chord_share, finish
+        from bladegen.cli.options.fairing import chord_share, planform_fairing
+        from bladegen.cli.options.parsing import finish
         from bladegen.formats.reading import read
 
         made = Blade.from_definition(
@@ -174,6 +183,7 @@ class Making:
             planes=PLANES[self.planes],
             trailing_edge=finish(self.trailing_edge),
             fairing=chord_share(self.fairing, "fairing"),
+            fair_planform=planform_fairing(self.fair_planform, "fair-planform"),
         )
         made.sections(made.eta)  # refuses a trailing edge that is thicker than its section
         return made

@@ -17,7 +17,6 @@ from bladegen.support.files import content_of
 from bladegen.variants.designs import Design, tabulated
 
 __all__ = [
-    "chord_share",
     "coordinates",
     "factor_bounds",
     "factor_table",
@@ -136,27 +135,6 @@ def finish(text: str, field: str = "trailing-edge") -> TrailingEdge:
 
 _NAMED: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
 _PER_CENT = re.compile(r"\s*([0-9]*\.?[0-9]+)\s*%\s*")
-
-
-def chord_share(text: str, field: str) -> float | None:
-    """Return a length in chords, None for "off".
-
-    Raises
-    ------
-    BladegenError
-        If it is neither.
-
-    >>> chord_share("2e-5", "fairing")
-    2e-05
-    """
-    if text.lower() == "off":
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        raise BladegenError(
-            f"{field}: got {text!r}, must be a share of the chord, such as 1e-5, or off"
-        ) from None
 
 
 def factor_bounds(texts: Sequence[str], field: str = "vary") -> dict[str, tuple[float, float]]:

@@ -58,13 +58,16 @@ def redefined(blade: "Blade", *, tolerance: float = TOLERANCE) -> BladeDefinitio
     Returns
     -------
     BladeDefinition
-        The blade's own, where nothing was perturbed; otherwise one whose airfoils bear the
+        The blade's own, where nothing was perturbed, sampled if its planform was made fair;
+        otherwise one whose airfoils bear the
         name of the blade and their place.  A finding says how many stations were added, and
         which distance is left if the tolerance cannot be kept with `MOST_STATIONS`.
     """
-    if not blade.changes:
+    if not blade.changes and blade.fair_planform is None:
         return blade.definition
     draft = _sampled_planform(blade, tolerance)
+    if not blade.changes:
+        return draft
     shapes = _Shapes(blade)
     eta = blade.eta
     while True:

@@ -30,6 +30,13 @@ def check(
             help="With OTHER: a PNG of FILE coloured by distance.", callback=ending_in(".png")
         ),
     ] = None,
+    zebra: Annotated[
+        Path | None,
+        typer.Option(
+            help="A PNG of zebra stripes on FILE, a CAD file or a blade, from its exact normals.",
+            callback=ending_in(".png"),
+        ),
+    ] = None,
     airfoils: Airfoils = None,
     as_json: Json = False,
 ) -> None:
@@ -38,6 +45,8 @@ def check(
     Exit with 1 if a single one is not sound.
     """
     if other is not None:
+        if zebra is not None:
+            raise BladegenError("zebra: stripes are drawn on one file; leave the other one out")
         _compare(file, other, screenshot, airfoils, as_json)
         return
     if screenshot is not None:
@@ -47,6 +56,8 @@ def check(
 
     blade = blade_of(file, airfoils)
     result = checks.check_file(Path(file)) if blade is None else checks.check_blade(blade)
+    if zebra is not None:
+        _stripes(Path(file) if blade is None else blade, zebra)
     made = made_by(Path(file if blade is None else blade.definition.source))
     if as_json:
         typer.echo(
@@ -67,6 +78,8 @@ def check(
         print_findings(result.figures.get("findings", []))
         if made is not None:
             typer.echo(f"made from: {made.text}")
+        if zebra is not None:
+            typer.echo(f"wrote {zebra}")
     if result.problems:
         raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
 
@@ -81,6 +94,18 @@ def blade_of(file: str, airfoils: Path | None = None) -> Any:
     if file in bundled() or not suffix or (suffix not in SOLIDS + MESHES and is_read(Path(file))):
         return replace(MAKING, airfoils=airfoils).blade(file)
     return None
+
+
+def _stripes(thing: Any, target: Path) -> None:
+    """Draw zebra stripes on a blade or on what a file holds."""
+    from bladegen.exports.marks import marked
+    from bladegen.exports.provenance import drawn_of
+    from bladegen.views.zebra import draw, sheets_of
+
+    with progress_bar() as progress:
+        progress("rendering")
+        with marked(target, drawn_of(thing, command=COMMAND.get())) as temporary:
+            draw(sheets_of(thing), thing.name, temporary)
 
 
 def _compare(

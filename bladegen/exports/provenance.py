@@ -31,6 +31,7 @@ __all__ = [
     "blade_settings",
     "compared_of",
     "content_of",
+    "drawn_of",
     "fingerprint",
     "made_from",
     "word",
@@ -167,14 +168,16 @@ def made_from(
     )
 
 
+def drawn_of(thing: Blade | Path, *, command: str = "") -> Provenance:
+    """Return what a picture is made from: a blade and its settings, or a file as it is."""
+    if isinstance(thing, Path):
+        return Provenance(__version__, thing.name, thing.name, digest_of(thing), command=command)
+    return made_from(thing, {}, command)
+
+
 def compared_of(one: Blade | Path, other: Blade | Path, *, command: str) -> Provenance:
     """Return what a picture of two things is made from: the one, its settings, and the other."""
-    first, second = (
-        Provenance(__version__, thing.name, thing.name, digest_of(thing))
-        if isinstance(thing, Path)
-        else made_from(thing, {})
-        for thing in (one, other)
-    )
+    first, second = drawn_of(one), drawn_of(other)
     told = {"against": second.source or second.blade, "against_sha256": second.sha256}
     settings = first.settings + tuple((key, value) for key, value in told.items() if value)
     return replace(first, command=command, settings=settings, id="")

@@ -19,6 +19,7 @@ from bladegen.curves import polygons
 from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import Finding
 from bladegen.measures import foreign, inflections, properties, smoothness, spanwise
+from bladegen.measures.fairness import fairness
 from bladegen.measures.file_figures import mesh_figures, solid_figures
 from bladegen.shapes import affine
 from bladegen.support.arrays import Array
@@ -27,6 +28,7 @@ __all__ = ["Check", "check_blade", "check_file", "mesh_figures", "solid_figures"
 
 SPANS = 200  # spans at which a blade is held against its definition
 ADDED = 0.01  # of the volume: what the finish of trailing edges may add without a finding
+DIGITS = 4  # of a list of creases
 SAME = 1e-9  # relative, of thicknesses that differ by rounding
 
 
@@ -151,11 +153,20 @@ def _thickened(blade: Blade, added: float) -> list[Finding]:
 
 
 def _smoothness(blade: Blade) -> dict[str, Any]:
-    eta, angle = smoothness.creases(blade)
-    worst = int(np.argmax(angle)) if angle.size else None
+    fair = fairness(blade)
+    worst = max(fair.creases, key=lambda pair: pair[1], default=None)
+    jump, at = fair.jump
     return {
-        "crease_deg": 0.0 if worst is None else float(np.degrees(angle[worst])),
-        "crease_at_eta": None if worst is None else float(eta[worst]),
+        "crease_deg": 0.0 if worst is None else float(np.degrees(worst[1])),
+        "crease_at_eta": None if worst is None else worst[0],
+        "creases_deg": [
+            [round(eta, DIGITS), round(float(np.degrees(angle)), DIGITS)]
+            for eta, angle in fair.creases
+        ],
+        "curvature_jump_per_m": jump,
+        "curvature_jump_at_eta": at,
+        "spanwise_curvature_varies_per_m": fair.spanwise,
+        "chordwise_curvature_varies": fair.chordwise,
     }
 
 

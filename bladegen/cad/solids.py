@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.cad import pieces
+from bladegen.cad.pieces import Patch
 from bladegen.cad.shapes import MILLIMETRES, area, is_valid
 from bladegen.cad.step_documents import Part
 from bladegen.errors import CadError, visible
@@ -92,6 +94,7 @@ def solid(
     sections: int | None = None,
     spans: Array | None = None,
     tip: Tip = flat_tip,
+    split: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Solid:
     """Make a blade's solid.
@@ -109,6 +112,9 @@ def solid(
         Sections to begin with (`fitting.fitted`).
     tip : callable
         `tips.flat_tip` or `tips.round_tip`.
+    split : bool
+        Cut the sides in pieces, so that OCCT's default quadrature finds the volume to 1e-5
+        (`pieces`); else each side is one face.
     progress : callable
         Told what is being done.
 
@@ -139,14 +145,50 @@ def solid(
         )
     progress("building the solid")
     scaled = replace(net, poles=net.poles * MILLIMETRES)
-    halves = [_face(_surface(h.poles, h.u_knots, h.v_knots)) for h in scaled.halves()]
-    faces = list(zip(blade.sides, halves, strict=True))
-    if blunt:
-        strip = np.stack([scaled.poles[-1], scaled.poles[0]])
-        faces.append((EDGE, _face(_surface(strip, _LINEAR, net.v_knots))))
-    faces += [(ROOT, _cap(scaled, 0.0, blunt)), *_tip_faces(scaled, blunt, tip)]
+    faces = _faces(scaled, blade.sides, blunt, tip, split)
     shape, named = _closed(faces, blade.name)
     return Solid(shape, named, net, deviation, tip_volume(net, tip), blade.name)
+
+
+def _faces(
+    net: SurfaceNet, sides: tuple[str, str], blunt: bool, tip: Tip, split: bool
+) -> list[tuple[str, Any]]:
+    """Make the faces of a solid by name, in pieces if it is to be split."""
+    suction, pressure = net.halves()
+    u = pieces.cuts(suction.u_knots, pieces.AROUND) if split else np.zeros(0)
+    v = pieces.cuts(net.v_knots, pieces.ALONG) if split else np.zeros(0)
+    cut = [
+        pieces.cut(Patch(half.poles, half.u_knots, half.v_knots), at, v)
+        for half, at in ((suction, u), (pressure, pieces.mirrored(u)))
+    ]
+    faces = [
+        face
+        for name, rows in zip(sides, cut, strict=True)
+        for face in _numbered(name, [_face(_surface(*p)) for row in rows for p in row])
+    ]
+    if blunt:
+        strip = Patch(np.stack([net.poles[-1], net.poles[0]]), _LINEAR, net.v_knots)
+        rows = pieces.cut(strip, np.zeros(0), v)
+        faces += _numbered(EDGE, [_face(_surface(*row[0])) for row in rows])
+    faces.append((ROOT, _cap([p for rows in cut for p in rows[0]], 0, blunt)))
+    poles = rounded(net, tip)
+    if poles is None:
+        faces.append((TIP, _cap([p for rows in cut for p in rows[-1]], -1, blunt)))
+        return faces
+    # OCCT's quadrature takes as many points along u as v has knot spans: v goes to the nose
+    across = pieces.cut(Patch(poles.swapaxes(0, 1), BEZIER, suction.u_knots), np.zeros(0), u)
+    faces += _numbered(TIP, [_face(_surface(*row[0])) for row in across])
+    if blunt:
+        edge = _surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
+        faces.append((TIP_EDGE, _face(edge)))
+    return faces
+
+
+def _numbered(name: str, faces: list[Any]) -> list[tuple[str, Any]]:
+    """Name faces after their region, with numbers from the root on if there are several."""
+    if len(faces) == 1:
+        return [(name, faces[0])]
+    return [(f"{name} {number}", face) for number, face in enumerate(faces, start=1)]
 
 
 _LINEAR = np.array([0.0, 0.0, 1.0, 1.0])
@@ -213,25 +255,11 @@ def _line(start: Array, end: Array) -> Any:
     return BRepBuilderAPI_MakeEdge(gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist())).Edge()
 
 
-def _tip_faces(net: SurfaceNet, blunt: bool, tip: Tip) -> list[tuple[str, Any]]:
-    """Make the faces that close the tip: a plane, or the spline through the tip's arcs."""
-    poles = rounded(net, tip)
-    if poles is None:
-        return [(TIP, _cap(net, 1.0, blunt))]
-    faces = [(TIP, _face(_surface(poles, net.halves()[0].u_knots, BEZIER)))]
+def _cap(around: list[Patch], end: int, blunt: bool) -> Any:
+    """Make the plane face inside the section at an end, the first row or the last, of patches."""
+    edges = [_edge(_curve(patch.poles[:, end], patch.u_knots)) for patch in around]
     if blunt:
-        edge = _surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
-        faces.append((TIP_EDGE, _face(edge)))
-    return faces
-
-
-def _cap(net: SurfaceNet, v: float, blunt: bool) -> Any:
-    """Make the plane face inside the section at the root (v = 0) or tip (v = 1)."""
-    end = 0 if v == 0.0 else -1
-    edges = [_edge(_curve(half.poles[:, end], half.u_knots)) for half in net.halves()]
-    if blunt:
-        row = net.poles[:, end]
-        edges.append(_line(row[-1], row[0]))
+        edges.append(_line(around[-1].poles[-1, end], around[0].poles[0, end]))
     return _filled(edges)
 
 

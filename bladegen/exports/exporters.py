@@ -28,6 +28,7 @@ def export(
     *,
     tolerance: float = Options.tolerance,
     sections: int | None = None,
+    split: bool = Options.split,
     stations: int = Options.stations,
     tip: "Tip | None" = None,
     unit: str = Options.unit,
@@ -55,6 +56,9 @@ def export(
         Solids: largest distance to the blade's sections [m], 1e-6 to 0.05.
     sections : int, optional
         Solids: exactly so many sections instead of as many as the tolerance needs.
+    split : bool
+        Solids: cut the sides in pieces, so that CAD systems find the volume to 1e-5 and make
+        sections in a tenth of the time; else each side is one face.
     stations : int
         Meshes and tables of sections: how many sections.
     tip : callable, optional
@@ -106,6 +110,7 @@ def export(
     given: dict[str, Any] = {
         "tolerance": tolerance,
         "sections": sections,
+        "split": split,
         "stations": stations,
         "tip": flat_tip if tip is None else tip,
         "unit": unit,

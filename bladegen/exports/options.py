@@ -43,6 +43,8 @@ class Options:
         Solids: largest distance to the blade's sections [m].
     sections : int, optional
         Solids: exactly so many sections instead of as many as the tolerance needs.
+    split : bool
+        Solids: sides in pieces on which CAD systems find the volume, not one face each.
     stations : int
         Meshes: how many sections.
     tip : callable
@@ -70,6 +72,7 @@ class Options:
 
     tolerance: float = solids.DEFAULT_TOLERANCE
     sections: int | None = None
+    split: bool = False
     stations: int = mesh.SECTIONS
     tip: Tip = flat_tip
     unit: str = "m"
@@ -114,6 +117,8 @@ class Options:
                 found["tolerance_mm"] = word(1e3 * self.tolerance)
             else:
                 found["solid_sections"] = word(self.sections)
+            if self.split:
+                found["split"] = "yes"
             if suffix in (".step", ".stp"):
                 found["schema"] = self.step_schema
             if suffix != ".brep":  # which has no place for it

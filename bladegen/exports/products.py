@@ -35,6 +35,7 @@ class Products:
             sections=self.options.sections,
             spans=self.options.spans,
             tip=self.options.tip,
+            split=self.options.split,
             progress=self.progress,
         )
 

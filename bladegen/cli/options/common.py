@@ -200,6 +200,12 @@ class Producing:
     light: Annotated[
         bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")
     ] = False
+    split: Annotated[
+        bool,
+        typer.Option(
+            "--split", help="Solids' sides in pieces: volumes in FreeCAD are right to 1e-5."
+        ),
+    ] = False
     stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300
     tip: Annotated[
         TipKind,
@@ -256,6 +262,7 @@ class Producing:
             step_schema=self.step,
             author=self.author,
             organisation=self.organisation,
+            split=self.split,
             stations=self.stations,
             tip=TIPS[self.tip],
             unit=self.unit,

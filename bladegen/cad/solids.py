@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.cad import pieces
+from bladegen.cad import pieces, shaping
 from bladegen.cad.pieces import Patch
 from bladegen.cad.shapes import MILLIMETRES, area, is_valid
 from bladegen.cad.step_documents import Part
@@ -164,12 +164,14 @@ def _faces(
     faces = [
         face
         for name, rows in zip(sides, cut, strict=True)
-        for face in _numbered(name, [_face(_surface(*p)) for row in rows for p in row])
+        for face in _numbered(
+            name, [shaping.face(shaping.surface(*p)) for row in rows for p in row]
+        )
     ]
     if blunt:
         strip = Patch(np.stack([net.poles[-1], net.poles[0]]), _LINEAR, net.v_knots)
         rows = pieces.cut(strip, np.zeros(0), v)
-        faces += _numbered(EDGE, [_face(_surface(*row[0])) for row in rows])
+        faces += _numbered(EDGE, [shaping.face(shaping.surface(*row[0])) for row in rows])
     faces.append((ROOT, _cap([p for rows in cut for p in rows[0]], 0, blunt)))
     poles = rounded(net, tip)
     if poles is None:
@@ -177,10 +179,10 @@ def _faces(
         return faces
     # OCCT's quadrature takes as many points along u as v has knot spans: v goes to the nose
     across = pieces.cut(Patch(poles.swapaxes(0, 1), BEZIER, suction.u_knots), np.zeros(0), u)
-    faces += _numbered(TIP, [_face(_surface(*row[0])) for row in across])
+    faces += _numbered(TIP, [shaping.face(shaping.surface(*row[0])) for row in across])
     if blunt:
-        edge = _surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
-        faces.append((TIP_EDGE, _face(edge)))
+        edge = shaping.surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
+        faces.append((TIP_EDGE, shaping.face(edge)))
     return faces
 
 
@@ -194,86 +196,12 @@ def _numbered(name: str, faces: list[Any]) -> list[tuple[str, Any]]:
 _LINEAR = np.array([0.0, 0.0, 1.0, 1.0])
 
 
-def _surface(poles: Array, u_knots: Array, v_knots: Array) -> Any:
-    """Hand a net to OCCT; degrees follow from the numbers of poles and knots."""
-    from OCP.Geom import Geom_BSplineSurface
-    from OCP.gp import gp_Pnt
-    from OCP.TColgp import TColgp_Array2OfPnt
-
-    rows, columns = poles.shape[:2]
-    points = TColgp_Array2OfPnt(1, rows, 1, columns)
-    for i, row in enumerate(poles.tolist(), start=1):
-        for j, (x, y, z) in enumerate(row, start=1):
-            points.SetValue(i, j, gp_Pnt(x, y, z))
-
-    (u, mu), (v, mv) = _knots(u_knots), _knots(v_knots)
-    degrees = len(u_knots) - rows - 1, len(v_knots) - columns - 1
-    return Geom_BSplineSurface(points, u, v, mu, mv, *degrees, False, False)
-
-
-def _curve(poles: Array, knots: Array) -> Any:
-    """Hand a row of poles to OCCT, as `_surface` does a net."""
-    from OCP.Geom import Geom_BSplineCurve
-    from OCP.gp import gp_Pnt
-    from OCP.TColgp import TColgp_Array1OfPnt
-
-    points = TColgp_Array1OfPnt(1, len(poles))
-    for i, (x, y, z) in enumerate(poles.tolist(), start=1):
-        points.SetValue(i, gp_Pnt(x, y, z))
-    return Geom_BSplineCurve(points, *_knots(knots), len(knots) - len(poles) - 1, False)
-
-
-def _knots(knots: Array) -> tuple[Any, Any]:
-    """Return distinct knots and their multiplicities as OCCT's arrays."""
-    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
-
-    values, counts = np.unique(knots, return_counts=True)
-    reals = TColStd_Array1OfReal(1, len(values))
-    integers = TColStd_Array1OfInteger(1, len(values))
-    for i, (value, count) in enumerate(zip(values.tolist(), counts.tolist(), strict=True), start=1):
-        reals.SetValue(i, value)
-        integers.SetValue(i, count)
-    return reals, integers
-
-
-def _face(surface: Any) -> Any:
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-
-    return BRepBuilderAPI_MakeFace(surface, 1e-7).Face()
-
-
-def _edge(curve: Any) -> Any:
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-
-    return BRepBuilderAPI_MakeEdge(curve).Edge()
-
-
-def _line(start: Array, end: Array) -> Any:
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-    from OCP.gp import gp_Pnt
-
-    return BRepBuilderAPI_MakeEdge(gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist())).Edge()
-
-
 def _cap(around: list[Patch], end: int, blunt: bool) -> Any:
     """Make the plane face inside the section at an end, the first row or the last, of patches."""
-    edges = [_edge(_curve(patch.poles[:, end], patch.u_knots)) for patch in around]
+    edges = [shaping.edge(shaping.curve(patch.poles[:, end], patch.u_knots)) for patch in around]
     if blunt:
-        edges.append(_line(around[-1].poles[-1, end], around[0].poles[0, end]))
-    return _filled(edges)
-
-
-def _filled(edges: list[Any]) -> Any:
-    """Make the plane face that a closed loop of edges encloses."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
-
-    wire = BRepBuilderAPI_MakeWire()
-    for edge in edges:
-        wire.Add(edge)
-    face = BRepBuilderAPI_MakeFace(wire.Wire(), True)
-    if not face.IsDone():
-        raise CadError("an end of the blade does not lie in a plane")
-    return face.Face()
+        edges.append(shaping.line(around[-1].poles[-1, end], around[0].poles[0, end]))
+    return shaping.filled(edges)
 
 
 def _closed(faces: list[tuple[str, Any]], name: str) -> tuple[Any, tuple[tuple[str, Any], ...]]:

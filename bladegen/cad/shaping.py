@@ -1,0 +1,87 @@
+"""Poles and knots to OCCT's surfaces, curves, edges and faces.  OCP is imported when needed."""
+
+from typing import Any
+
+import numpy as np
+
+from bladegen.errors import CadError
+from bladegen.support.arrays import Array
+
+__all__ = ["curve", "edge", "face", "filled", "line", "surface"]
+
+
+def surface(poles: Array, u_knots: Array, v_knots: Array) -> Any:
+    """Hand a net to OCCT; degrees follow from the numbers of poles and knots."""
+    from OCP.Geom import Geom_BSplineSurface
+    from OCP.gp import gp_Pnt
+    from OCP.TColgp import TColgp_Array2OfPnt
+
+    rows, columns = poles.shape[:2]
+    points = TColgp_Array2OfPnt(1, rows, 1, columns)
+    for i, row in enumerate(poles.tolist(), start=1):
+        for j, (x, y, z) in enumerate(row, start=1):
+            points.SetValue(i, j, gp_Pnt(x, y, z))
+
+    (u, mu), (v, mv) = _knots(u_knots), _knots(v_knots)
+    degrees = len(u_knots) - rows - 1, len(v_knots) - columns - 1
+    return Geom_BSplineSurface(points, u, v, mu, mv, *degrees, False, False)
+
+
+def curve(poles: Array, knots: Array) -> Any:
+    """Hand a row of poles to OCCT, as `surface` does a net."""
+    from OCP.Geom import Geom_BSplineCurve
+    from OCP.gp import gp_Pnt
+    from OCP.TColgp import TColgp_Array1OfPnt
+
+    points = TColgp_Array1OfPnt(1, len(poles))
+    for i, (x, y, z) in enumerate(poles.tolist(), start=1):
+        points.SetValue(i, gp_Pnt(x, y, z))
+    return Geom_BSplineCurve(points, *_knots(knots), len(knots) - len(poles) - 1, False)
+
+
+def _knots(knots: Array) -> tuple[Any, Any]:
+    """Return distinct knots and their multiplicities as OCCT's arrays."""
+    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+
+    values, counts = np.unique(knots, return_counts=True)
+    reals = TColStd_Array1OfReal(1, len(values))
+    integers = TColStd_Array1OfInteger(1, len(values))
+    for i, (value, count) in enumerate(zip(values.tolist(), counts.tolist(), strict=True), start=1):
+        reals.SetValue(i, value)
+        integers.SetValue(i, count)
+    return reals, integers
+
+
+def face(on: Any) -> Any:
+    """Make the face that is all of a surface."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+
+    return BRepBuilderAPI_MakeFace(on, 1e-7).Face()
+
+
+def edge(along: Any) -> Any:
+    """Make the edge that is all of a curve."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+
+    return BRepBuilderAPI_MakeEdge(along).Edge()
+
+
+def line(start: Array, end: Array) -> Any:
+    """Make the straight edge between two points."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.gp import gp_Pnt
+
+    return BRepBuilderAPI_MakeEdge(gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist())).Edge()
+
+
+def filled(edges: list[Any]) -> Any:
+    """Make the plane face that a closed loop of edges encloses."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+
+    wire = BRepBuilderAPI_MakeWire()
+    for one in edges:
+        wire.Add(one)
+    made = BRepBuilderAPI_MakeFace(wire.Wire(), True)
+    if not made.IsDone():
+        raise CadError("an end of the blade does not lie in a plane")
+    return made.Face()

@@ -5,8 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
+from bladegen.curves.sides import sides
 from bladegen.measures.properties import area_moments
-from bladegen.measures.spanwise import sides, spanwise, write_csv
+from bladegen.measures.spanwise import spanwise, write_csv
 
 ETA = np.linspace(0, 1, 41)
 

@@ -4,16 +4,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.airfoils.section_splines import SectionSplines
+from bladegen.blade.lofting import edge_widths as lofting
 from bladegen.blade.lofting.edge_widths import Wedges
+from bladegen.curves.sides import sides
 from bladegen.errors import GeometryError
 from bladegen.measures.smoothness import edge_bulges, edge_widths
 from bladegen.shapes import grassmann
-from strategies import airfoils, definitions, few, naca
+from strategies import airfoils, circle, definitions, few, naca
 
 U = landmark_parameters(401)
 SPLINES = SectionSplines(U)
@@ -98,3 +100,65 @@ def test_a_side_that_ends_ahead_of_mid_chord_is_refused():
     curves = SectionSplines(landmark_parameters(101)).fit(points[None])
     with pytest.raises(GeometryError, match=r"ends at 0\.\d+ of its chord, must be behind 0\.5"):
         Wedges.to(curves, np.array([0.01]))
+
+
+def blunt(width, thickness=0.9, count=301):
+    """A body that is half an ellipse ahead and tapers to an edge as wide as `width` behind."""
+    x = np.linspace(0.0, 1.0, count) ** 2
+    ahead = 0.5 * thickness * np.sqrt(np.clip(1.0 - (x - 0.4) ** 2 / 0.16, 0.0, 1.0))
+    f = np.clip((x - 0.4) / 0.6, 0.0, 1.0)
+    behind = 0.5 * (thickness + (width - thickness) * f**2)
+    half = np.where(x < 0.4, ahead, behind)
+    return np.concatenate([np.stack([x, half], 1)[::-1], np.stack([x, -half], 1)[1:]])
+
+
+def round_to_flatback(width, path, thickness=0.9):
+    """A blade that is round at its root and a flatback of this width from 5 % of the span on."""
+    definition = bg.read("nrel5mw")
+    back = bg.Airfoil("flatback", blunt(width, thickness))
+    eta = np.array([0.0, 0.02, 0.05, 1.0])
+    foils = [bg.Airfoil("circle", circle(301))] * 2 + [back, back]
+    return bg.Blade.from_definition(
+        replace(
+            definition,
+            stations=tuple(bg.Station(*pair) for pair in zip(eta.tolist(), foils, strict=True)),
+            relative_thickness=bg.Distribution(eta, np.array([1.0, 1.0, thickness, thickness])),
+        ),
+        landmarks=201,
+        path=path,
+    )
+
+
+def behind(blade, eta):
+    """Thickness at 95 % of the chord."""
+    upper, lower = sides(blade.profiles(eta), np.array([0.95]))
+    return (upper - lower)[:, 0]
+
+
+@PATHS
+def test_a_flatback_grows_out_of_a_circle_without_a_dent_behind(path):
+    made = round_to_flatback(0.4, path)
+    eta = np.linspace(0.02, 0.05, 61)
+    ends = behind(made, eta[[0, -1]])
+    dents = [ends.min() - behind(one, eta).min() for one in (replace(made, edge_width=None), made)]
+    assert dents[0] > 0.02
+    assert dents[1] < 0.4 * dents[0]
+    widths = edge_widths(made, eta)
+    assert np.all(np.diff(widths) >= -1e-12)
+    assert_allclose(widths[[0, -1]], edge_widths(made, made.eta[[1, 2]]), atol=1e-12)
+    assert edge_bulges(made) == []
+
+
+@PATHS
+def test_stations_and_edges_that_hardly_differ_know_nothing_of_dents(path, monkeypatch):
+    made = round_to_flatback(0.08, path)
+    eta = np.linspace(0.0, 1.0, 201)
+    before = made.profiles(eta)
+    monkeypatch.setattr(lofting, "FILLED", 0.0)
+    again = round_to_flatback(0.08, path)
+    assert_array_equal(again.profiles(eta), before)
+    wide = round_to_flatback(0.4, path)
+    monkeypatch.undo()
+    assert_allclose(
+        round_to_flatback(0.4, path).profiles(wide.eta), wide.profiles(wide.eta), atol=1e-12
+    )

@@ -14,8 +14,8 @@ from itertools import pairwise
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.curves.sides import sides
 from bladegen.definition.blade_definition import pchip
-from bladegen.measures.spanwise import sides
 from bladegen.support.arrays import Array, Indices
 
 __all__ = ["DEPTH", "Inflection", "bends", "inflections"]

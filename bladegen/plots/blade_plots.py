@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.measures.spanwise import LINES, sides, spanwise
+from bladegen.curves.sides import sides
+from bladegen.measures.spanwise import LINES, spanwise
 from bladegen.plots import combs
 from bladegen.plots.figures import dress, figure, figure_of, pair, shade, titled
 from bladegen.plots.path_plot import path

@@ -7,8 +7,11 @@ through the stations' widths, and sections are brought to it by a wedge: with x 
 
     y' = y +- (w - w0) / 2 * f^3 (2 - f),      f = (x - 1/2) / (1/2)      where x > 1/2
 
-on the suction and the pressure side.  The wedge begins with no slope and no curvature and adds no
-curvature at the edge; chord, leading edge, trailing-edge midpoint and thickness stay.
+on the suction and the pressure side.  Where stations differ by more than `WIDE` in their width, as
+a circle and a flatback do, a path's sections may be thinner behind than both: corners open while
+sides straighten.  Their width then rises sooner, so that most of that dent is filled.  The wedge
+begins with no slope and no curvature and adds no curvature at the edge; chord, leading edge,
+trailing-edge midpoint and thickness stay.
 """
 
 from collections.abc import Callable
@@ -19,17 +22,25 @@ import numpy as np
 from bladegen.airfoils.chord_lines import ChordLines
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.definition.blade_definition import Interpolant
+from bladegen.curves.sides import sides
+from bladegen.definition.blade_definition import Interpolant, pchip
 from bladegen.errors import GeometryError
 from bladegen.shapes import affine
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Indices
 
 __all__ = ["EdgeWidths", "Joining", "Wedges"]
 
 AHEAD = 0.5  # of chord: nothing moves ahead of it
 DIGITS = 13  # of a width in chords; what lies behind is rounding
 
+WIDE = 0.1  # of chord: neighbours whose widths differ by no more make no dent worth filling
+BEHIND = np.array([0.95])  # of chord: where sections are held against their neighbours
+DENT = 5e-3  # of chord
+FILLED = 0.7  # of a dent: its sides dent unequally, and all of it would make the other bulge
+BETWEEN = np.array([0.25, 0.5, 0.75])  # of the way between stations
+
 Joining = Callable[[Array, Array], Interpolant]
+Between = Callable[[Indices], tuple[Array, Array, Array | None]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +66,7 @@ class EdgeWidths:
         thickness: Array | None,
         knots: Array,
         join: Joining,
+        between: Between | None = None,
     ) -> "EdgeWidths":
         """Return the widths that pass through those of stations.
 
@@ -70,10 +82,17 @@ class EdgeWidths:
             The path's parameter there.
         join : callable
             Interpolates between stations.
+        between : callable, optional
+            Gives, for the numbers of stations (m,), the path's parameter (m, 3) between each and
+            the next, at `BETWEEN` of the way, the sections (3 m, n, 2) and the thickness (3 m,)
+            there, if one rules.
         """
         sized = affine.restore(airfoils, *splines.normalising(airfoils, thickness))
-        widths = splines.fit(sized).edge_width
-        return cls(splines, join(knots, np.round(widths, DIGITS)))
+        widths = np.round(splines.fit(sized).edge_width, DIGITS)
+        wide = np.flatnonzero(np.abs(np.diff(widths)) > WIDE)
+        if between is not None and wide.size:
+            knots, widths = _filled(splines, knots, widths, sized, wide, between(wide))
+        return cls(splines, join(knots, widths))
 
     def wedges(self, curves: SectionCurves, thickness: Array | None, q: Array) -> "Wedges":
         """Return the wedges that bring sections to their width at the path's parameter (k,).
@@ -83,6 +102,49 @@ class EdgeWidths:
         A, c = curves.normalising(thickness)
         lines = ChordLines.sized(curves, A, c, thickness)
         return Wedges.between(curves, A, c, lines, self.over(q))
+
+
+def _filled(
+    splines: SectionSplines,
+    knots: Array,
+    widths: Array,
+    sized: Array,
+    wide: Indices,
+    between: tuple[Array, Array, Array | None],
+) -> tuple[Array, Array]:
+    """Return knots and widths with more between stations whose path is dented behind.
+
+    A width there is that of the path and `FILLED` of what the section is thinner at `BEHIND` than
+    a monotone spline through the stations' thicknesses there; it stays between the stations' own.
+    """
+    q, points, thickness = between
+    profiles = affine.restore(points, *splines.normalising(points, thickness))
+    own, found = (_behind(sections) for sections in (sized, profiles))
+    missing = pchip(knots, own)(q) - found.reshape(q.shape)
+    ends = np.stack([own[wide], own[wide + 1]], axis=-1)
+    dented = np.any(found.reshape(q.shape) < ends.min(axis=-1)[:, None] - DENT, axis=1)
+    around = np.concatenate([knots[wide, None], q, knots[wide + 1, None]], axis=1)
+    dented &= np.all(np.diff(around, axis=1) > 0.0, axis=1)
+    lift = FILLED * np.maximum(missing, 0.0) / _wedge(BEHIND)
+    opened = splines.fit(profiles).edge_width.reshape(q.shape) + lift
+    start, end = widths[wide][:, None], widths[wide + 1][:, None]
+    sign = np.sign(end - start)
+    rising = np.maximum.accumulate(sign * np.clip(opened, *_sorted(start, end)), axis=1)
+    knots = np.concatenate([knots, q[dented].reshape(-1)])
+    widths = np.concatenate([widths, np.round((sign * rising)[dented].reshape(-1), DIGITS)])
+    order = np.argsort(knots, kind="stable")
+    return knots[order], widths[order]
+
+
+def _sorted(one: Array, other: Array) -> tuple[Array, Array]:
+    return np.minimum(one, other), np.maximum(one, other)
+
+
+def _behind(profiles: Array) -> Array:
+    """Return the thickness (k,) of sections in chords at `BEHIND`."""
+    upper, lower = sides(profiles, BEHIND)
+    found: Array = (upper - lower)[:, 0]
+    return found
 
 
 @dataclass(frozen=True, eq=False)

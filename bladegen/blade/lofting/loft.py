@@ -12,7 +12,7 @@ import numpy as np
 
 from bladegen.airfoils.landmarks import Contour, Spacing, contour, landmark_parameters
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.blade.lofting.edge_widths import EdgeWidths, Joining
+from bladegen.blade.lofting.edge_widths import BETWEEN, EdgeWidths, Joining
 from bladegen.blade.lofting.joined import JoinedSections
 from bladegen.blade.lofting.paths import (
     PATHS,
@@ -30,7 +30,7 @@ from bladegen.definition.thickness import own_thickness
 from bladegen.errors import DefinitionError, Finding
 from bladegen.shapes import affine
 from bladegen.support.arguments import amount, function, instance, one_of, whole
-from bladegen.support.arrays import Array, readonly
+from bladegen.support.arrays import Array, Indices, readonly
 from bladegen.support.recent import Recent
 from bladegen.support.values import state_of
 
@@ -155,8 +155,20 @@ class Loft:
         airfoils = affine.restore(self.representatives, self.M, self.b)
         thickness = self.ruling(self.eta)
         return EdgeWidths.through(
-            airfoils, self.splines, thickness, self.parameter.knots, self.edge_width or pchip
+            airfoils,
+            self.splines,
+            thickness,
+            self.parameter.knots,
+            self.edge_width or pchip,
+            self._between,
         )
+
+    def _between(self, stations: Indices) -> tuple[Array, Array, Array | None]:
+        """Return the path's parameter, its sections and their thickness behind stations (m,)."""
+        spans = self.eta[stations, None] + np.diff(self.eta)[stations, None] * BETWEEN
+        flat = spans.reshape(-1)
+        q = self.parameter(flat).reshape(spans.shape)
+        return q, affine.restore(*self.at(flat)), self.ruling(flat)
 
     def finer(self, joined: JoinedSections, eta: Array, u: Array) -> Array:
         """Return points (k, m, 2) at landmark parameters (m,) of the sections at spans (k,)."""

@@ -2,10 +2,15 @@ import meshing
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.IGESControl import IGESControl_Controller, IGESControl_Writer
 from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS
 
 from bladegen.blade.blade import Blade
 from bladegen.cad import exchange, occt, shapes, solids
@@ -15,6 +20,7 @@ from bladegen.errors import CadError
 from bladegen.formats.reading import read
 from bladegen.measures import checks
 from bladegen.surface import mesh_files
+from bladegen.surface.tips import flat_tip, round_tip
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +56,34 @@ def test_gmsh_reads_them_as_one_volume_in_millimetres(solid, tmp_path, suffix):
     found = meshing.found(path)
     assert found.volumes == 1
     assert_allclose(found.box[5], 1000 * solid.net.poles[..., 2].max(), rtol=1e-3)
+
+
+def curves_on_surfaces(shape):
+    """Distances of edges from their curves on faces over their tolerance, as FreeCAD's check."""
+    faces, found = TopExp_Explorer(shape, TopAbs_FACE), []
+    while faces.More():
+        face = TopoDS.Face_s(faces.Current())
+        faces.Next()
+        surface, edges = BRepAdaptor_Surface(face, False), TopExp_Explorer(face, TopAbs_EDGE)
+        while edges.More():
+            edge = TopoDS.Edge_s(edges.Current())
+            edges.Next()
+            if BRep_Tool.Degenerated_s(edge):
+                continue
+            curve, flat = BRepAdaptor_Curve(edge), BRepAdaptor_Curve2d(edge, face)
+            for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), 200).tolist():
+                on = surface.Value(*flat.Value(t).Coord())
+                found.append(curve.Value(t).Distance(on) / BRep_Tool.Tolerance_s(edge))
+    return np.array(found)
+
+
+@BOTH
+@pytest.mark.parametrize("tip", [flat_tip, round_tip])
+def test_edges_lie_on_the_faces_of_files(tmp_path, suffix, tip):
+    made = solids.solid(Blade.from_definition(read("dtu10mw"), landmarks=101), sections=60, tip=tip)
+    path = tmp_path / f"blade{suffix}"
+    WRITERS[suffix](made, path)
+    assert curves_on_surfaces(exchange.read(path)).max() < 0.5
 
 
 def test_the_schema_is_what_was_asked_for(solid, tmp_path):

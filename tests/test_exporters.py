@@ -15,6 +15,7 @@ from bladegen.exports.products import Products
 from bladegen.exports.registry import FORMATS, Format
 from bladegen.surface import mesh, mesh_files
 from bladegen.surface.grids.grid import Spacing
+from bladegen.surface.regions import REGIONS
 from bladegen.surface.tips import flat_tip, round_tip
 
 MESHES = [".stl", ".ply", ".glb", ".obj", ".3mf", ".vtp"]
@@ -71,6 +72,25 @@ def test_the_same_blade_gives_the_same_bytes(blade, suffix, tmp_path):
         bg.export(blade, tmp_path / f"{name}{suffix}", stations=20).read_bytes() for name in "ab"
     )
     assert first == second
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".vtp"])
+def test_vtk_finds_the_regions(blade, made, suffix, tmp_path):
+    path = bg.export(blade, tmp_path / f"a{suffix}", stations=60)
+    found = pyvista.read(path).compute_cell_sizes()
+    if suffix == ".obj":
+        number = np.array(found["GroupIds"]).astype(int)
+        groups = [line[2:] for line in path.read_text().splitlines() if line.startswith("g ")]
+        assert groups == [name.replace(" ", "_") for name in REGIONS[:5]]
+        number -= number.min()
+    else:
+        number = found["region"]
+        assert list(pyvista.read(path).field_data["regions"]) == list(REGIONS)
+    corners = made.vertices[made.faces]
+    sides = corners[:, 1:] - corners[:, :1]
+    areas = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    wanted = np.bincount(made.regions, areas)
+    assert_allclose(np.bincount(number, np.abs(found["Area"])), wanted, rtol=1e-5)
 
 
 GRIDS = [name for name, row in FORMATS.items() if row.kind is Kind.grid]

@@ -13,6 +13,7 @@ from bladegen.errors import GeometryError
 from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.surface import mesh, mesh_files
+from bladegen.surface.regions import REGIONS
 from bladegen.surface.tips import flat_tip, on_arcs, round_tip
 from strategies import SEEDS, definitions, ellipse
 
@@ -173,6 +174,26 @@ def test_trimesh_agrees(name):
     assert_allclose(other.volume, made.volume, rtol=1e-9)
     assert_allclose(other.area, made.area, rtol=1e-9)
     assert_allclose(mesh_files.to_trimesh(made, scale=1e3).volume, 1e9 * made.volume, rtol=1e-9)
+
+
+@pytest.mark.parametrize("tip", [flat_tip, round_tip])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_triangles_know_their_regions(tip, mirrored):
+    blade = whole("dtu10mw").mirror_image() if mirrored else whole("dtu10mw")
+    made = mesh.from_blade(blade, stations=60, tip=tip)
+    names = [REGIONS[number] for number in np.unique(made.regions)]
+    assert names == list(REGIONS[: 5 if tip is flat_tip else 6])
+    corners = made.vertices[made.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    outward = [normals[made.regions == number].sum(axis=0) for number in range(5)]
+    assert outward[0][0] > 0 > outward[1][0], "the suction side looks downwind"
+    assert outward[2][1] * (-1 if mirrored else 1) > 0, "trailing edges lie at +y"
+    assert outward[3][2] < 0 < outward[4][2]
+    heights = corners[..., 2][made.regions == 3]
+    assert np.ptp(heights) < 0.01 * blade.length
+    places = made.places[made.faces]
+    first = places[made.regions == (1 if mirrored else 0)]
+    assert first[..., 1].max() <= 0.5
 
 
 def test_values_cannot_be_written():

@@ -166,13 +166,13 @@ def _core(content: bytes, made: Provenance) -> bytes:
 
 def _vtk(content: bytes, made: Provenance) -> bytes:
     codes = " ".join(str(code) for code in [*made.text.encode(), 0])
-    data = (
-        f'<FieldData><Array type="String" Name="{NAME}" NumberOfTuples="1" format="ascii">'
-        f"{codes}</Array></FieldData>"
-    )
-    return re.sub(
-        rb"<(PolyData|UnstructuredGrid)\b[^>]*>", lambda f: f[0] + data.encode(), content, count=1
-    )
+    said = (
+        f'<Array type="String" Name="{NAME}" NumberOfTuples="1" format="ascii">{codes}</Array>'
+    ).encode()
+    if b"<FieldData>" in content:  # a second one would hide the first
+        return content.replace(b"<FieldData>", b"<FieldData>" + said, 1)
+    said = b"<FieldData>" + said + b"</FieldData>"
+    return re.sub(rb"<(PolyData|UnstructuredGrid)\b[^>]*>", lambda f: f[0] + said, content, count=1)
 
 
 def _plain(head: bytes) -> str | None:

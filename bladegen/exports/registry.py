@@ -75,11 +75,9 @@ def _write_stl(products: Products, path: Path) -> None:
 
 def _write_obj(products: Products, path: Path) -> None:
     unit = products.options.unit
-    scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS[unit])
     header = f"bladegen {' '.join(products.blade.name.split())}, unit: {unit}"
-    path.write_text(
-        scaled.export(file_type="obj", include_normals=False, header=header), encoding="utf-8"
-    )
+    text = mesh_files.obj_text(products.mesh, header, scale=UNITS[unit])
+    path.write_text(text, encoding="utf-8")
 
 
 def _write_ply(products: Products, path: Path) -> None:
@@ -154,7 +152,9 @@ FORMATS = {
     ".stl": Format(Kind.triangles, "STL, binary triangles, m (or mm)", _write_stl),
     ".glb": Format(Kind.triangles, "glTF binary, triangles for the web, m", _write_glb),
     ".ply": Format(Kind.triangles, "PLY, binary triangles, m (or mm)", _write_ply),
-    ".obj": Format(Kind.triangles, "Wavefront OBJ, triangles, m (or mm)", _write_obj),
+    ".obj": Format(
+        Kind.triangles, "Wavefront OBJ, triangles in groups by region, m (or mm)", _write_obj
+    ),
     ".3mf": Format(Kind.triangles, "3MF, triangles for printing, mm", _write_3mf),
     ".vtp": Format(Kind.triangles, "VTK poly data, triangles for ParaView, m (or mm)", _write_vtp),
     ".p3d": Format(

@@ -118,7 +118,9 @@ class MeshModel:
     @cached_property
     def _cells(self) -> tuple[Indices, Indices]:
         x = self.model.baseline
-        _, used, faces = mesh.topology(self.model.sections(x), self._across(self._end.points(x)[1]))
+        _, used, faces, _ = mesh.topology(
+            self.model.sections(x), self._across(self._end.points(x)[1])
+        )
         return used, faces
 
     @staticmethod

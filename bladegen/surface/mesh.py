@@ -6,13 +6,14 @@ across the tip round it.  The mesh is watertight and its triangles face outward.
 those of the sections, metres.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, readonly
+from bladegen.surface.regions import REGIONS
 from bladegen.surface.tips import Tip, arcs, flat_tip, on_arcs
 
 __all__ = ["ACROSS", "TriangleMesh", "from_blade", "surface", "topology"]
@@ -34,19 +35,24 @@ class TriangleMesh:
         Vertices of each triangle, counter-clockwise seen from outside.
     places : (v, 2) array, optional
         Span fraction eta and landmark parameter u of each vertex, of one where several coincide.
+    regions : (f,) array of int, optional
+        Where each triangle lies, as a place in `regions.REGIONS`.
     """
 
     vertices: Array
     faces: Indices
     places: Array | None = None
+    regions: Indices | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", readonly(self.vertices))
         if self.places is not None:
             object.__setattr__(self, "places", readonly(self.places))
-        faces = np.array(self.faces, dtype=np.int64)
-        faces.flags.writeable = False
-        object.__setattr__(self, "faces", faces)
+        for name in ("faces", "regions"):
+            if getattr(self, name) is not None:
+                numbers = np.array(getattr(self, name), dtype=np.int64)
+                numbers.flags.writeable = False
+                object.__setattr__(self, name, numbers)
 
     def __repr__(self) -> str:
         return f"<TriangleMesh of {len(self.faces)} triangles, {len(self.vertices)} vertices>"
@@ -79,7 +85,9 @@ def from_blade(blade: Blade, *, stations: int = SECTIONS, tip: Tip = flat_tip) -
         side = blade.u[: len(poles), None]
         nearer = np.where(w <= 0.5, side, 1.0 - side).reshape(-1)
         places = np.concatenate([places, np.stack([np.ones_like(nearer), nearer], axis=-1)])
-    return surface(blade.sections(eta), across, places)
+    made = surface(blade.sections(eta), across, places)
+    sides = [REGIONS.index(name) for name in blade.sides]
+    return replace(made, regions=np.array([*sides, *range(2, len(REGIONS))])[made.regions])
 
 
 def surface(
@@ -110,14 +118,16 @@ def surface(
             f"mesh: got {k} sections of {n} landmarks, allowed are at least 2 sections of an "
             "odd number of at least 5 landmarks"
         )
-    points, used, faces = topology(sections, across)
-    return TriangleMesh(points[used], faces, None if places is None else places[used])
+    points, used, faces, regions = topology(sections, across)
+    return TriangleMesh(points[used], faces, None if places is None else places[used], regions)
 
 
-def topology(sections: Array, across: Array | None = None) -> tuple[Array, Indices, Indices]:
+def topology(
+    sections: Array, across: Array | None = None
+) -> tuple[Array, Indices, Indices, Indices]:
     """Return the points (m, 3) of a grid of sections, which are vertices, and their triangles.
 
-    Arguments are those of `surface`.
+    Last come their regions.  Arguments are those of `surface`.
     """
     k, n, _ = sections.shape
     points = sections.reshape(-1, 3)
@@ -130,15 +140,17 @@ def topology(sections: Array, across: Array | None = None) -> tuple[Array, Indic
         rows = np.arange(across.shape[0] * across.shape[1]).reshape(across.shape[:2]) + k * n
         rows[:, 0], rows[:, -1] = suction, pressure
         points = np.concatenate([points, across.reshape(-1, 3)])
-    faces = np.concatenate(
-        [
-            _quads(points, around[:-1, :-1], around[1:, :-1], around[1:, 1:], around[:-1, 1:]),
-            _cap(points, grid[0]),
-            _quads(points, rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]),
-            *(() if across is None else (_cap(points, rows[0])[:, ::-1],)),
-        ]
-    )
-    return points, *_welded(points, faces, grid, rows)
+    parts = [
+        _quads(points, around[:-1, :-1], around[1:, :-1], around[1:, 1:], around[:-1, 1:]),
+        _cap(points, grid[0]),
+        _quads(points, rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]),
+        *(() if across is None else (_cap(points, rows[0])[:, ::-1],)),
+    ]
+    sides = np.repeat([0, 1, 2], [n // 2, n // 2, 1])  # by the columns of quads
+    regions = [np.tile(sides, 2 * (k - 1))]
+    regions += [np.full(len(part), 3 + i) for i, part in enumerate(parts[1:])]
+    used, faces, kept = _welded(points, np.concatenate(parts), grid, rows)
+    return points, used, faces, np.concatenate(regions)[kept]
 
 
 def _quads(points: Array, a: Indices, b: Indices, c: Indices, d: Indices) -> Indices:
@@ -159,13 +171,18 @@ def _cap(points: Array, row: Indices) -> Indices:
     return _quads(points, pressure[:-1], suction[:-1], suction[1:], pressure[1:])
 
 
-def _welded(points: Array, faces: Indices, grid: Indices, rows: Indices) -> tuple[Indices, Indices]:
-    """Join neighbours that coincide, drop collapsed triangles; return used points and faces."""
+def _welded(
+    points: Array, faces: Indices, grid: Indices, rows: Indices
+) -> tuple[Indices, Indices, Array]:
+    """Join neighbours that coincide, drop collapsed triangles.
+
+    Returns the points that are used, the triangles of them, and which triangles were kept.
+    """
     faces = _merged(points, grid, rows)[faces]
     a, b, c = faces.T
-    faces = faces[(a != b) & (b != c) & (c != a)]
-    used, faces = np.unique(faces, return_inverse=True)
-    return used, faces.reshape(-1, 3)
+    kept = (a != b) & (b != c) & (c != a)
+    used, faces = np.unique(faces[kept], return_inverse=True)
+    return used, faces.reshape(-1, 3), kept
 
 
 def _merged(points: Array, grid: Indices, rows: Indices) -> Indices:

@@ -18,9 +18,10 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import FileError
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.mesh import SECTIONS, TriangleMesh, from_blade
+from bladegen.surface.regions import REGIONS
 from bladegen.surface.tips import Tip, flat_tip
 
-__all__ = ["assembled", "read", "sound", "to_trimesh", "trimesh_of", "with_steady_ids"]
+__all__ = ["assembled", "obj_text", "read", "sound", "to_trimesh", "trimesh_of", "with_steady_ids"]
 
 FARTHEST = 1e9  # of a vertex of a file, in its unit: products of three lengths stay finite
 
@@ -37,6 +38,17 @@ def to_trimesh(mesh: TriangleMesh, *, scale: float = 1.0) -> Any:
 def trimesh_of(blade: Blade, *, stations: int = SECTIONS, tip: Tip | None = None) -> Any:
     """Return a blade's mesh as a `trimesh.Trimesh` [m], for `Blade.mesh`."""
     return to_trimesh(from_blade(blade, stations=stations, tip=flat_tip if tip is None else tip))
+
+
+def obj_text(mesh: TriangleMesh, header: str, *, scale: float = 1.0) -> str:
+    """Return a mesh as a Wavefront OBJ file's text, a group a region, its lengths times `scale`."""
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (mesh.vertices * scale).tolist()]
+    regions = mesh.regions
+    assert regions is not None  # a blade's mesh has them
+    for number in np.unique(regions).tolist():
+        lines.append(f"g {REGIONS[number].replace(' ', '_')}")
+        lines += [f"f {a} {b} {c}" for a, b, c in (mesh.faces[regions == number] + 1).tolist()]
+    return "\n".join([f"# {header}", *lines, ""])
 
 
 def assembled(parts: Sequence[tuple[str, TriangleMesh, Array, Array]]) -> bytes:

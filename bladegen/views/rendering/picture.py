@@ -10,6 +10,7 @@ from bladegen.plots.style import INK
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
+from bladegen.surface.regions import REGIONS
 from bladegen.surface.vtk_files import save
 from bladegen.views.rendering.blade_scene import scene_of, thinning
 from bladegen.views.rendering.cameras import VIEWS, perspective
@@ -129,10 +130,16 @@ def gallery(sections: Array, *, columns: int, size: tuple[int, int]) -> Indices:
 
 
 def write_vtp(mesh: TriangleMesh, path: Path, *, scale: float = 1.0) -> None:
-    """Write a mesh as VTK poly data, lengths times `scale`, with eta and u where it has them."""
+    """Write a mesh as VTK poly data, lengths times `scale`.
+
+    With eta and u of points, regions of cells and these regions' names, where it has them.
+    """
     made = poly(mesh, scale)
     if mesh.places is not None:
         made["eta"], made["u"] = (np.array(column) for column in mesh.places.T)
+    if mesh.regions is not None:
+        made.cell_data["region"] = np.array(mesh.regions, dtype=np.int32)
+        made.field_data["regions"] = list(REGIONS)
     save(made, path)
 
 

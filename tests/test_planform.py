@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -136,31 +138,21 @@ def test_the_root_face_is_a_flange(name):
     (root,) = made.sections([0.0])
     assert_allclose(root[:, 2], 0.0, atol=1e-14)
     assert made.sections(np.linspace(0.0, 0.05, 101))[..., 2].min() >= -1e-14
-    end = root_end(made.definition)
-    assert end in made.eta
-    past = np.linspace(end, 1.0, 50)
+    past = np.linspace(root_end(made.definition), 1.0, 50)
     assert_allclose(
         made.planform.frames(past)[:, 2], normal_to_axis(made.definition.axis)(past)[:, 2]
     )
 
 
-@pytest.mark.parametrize(
-    ("etas", "kinds", "expected"),
-    [
-        ((0.0, 0.02, 0.2), "rra", 0.02),
-        ((0.0, 0.03, 0.2), "raa", 0.03),
-        ((0.0, 0.2, 0.5), "raa", 0.05),
-        ((0.0, 0.2, 1.0), "rra", 0.05),
-        ((0.0, 1.0), "rr", 0.05),
-        ((0.0, 0.2, 1.0), "aaa", 0.0),
-        ((0.0, 0.02, 1.0), "ara", 0.0),
-    ],
-)
-def test_where_a_round_root_ends(etas, kinds, expected):
-    wing = Airfoil("wing", np.array([[1.0, 0.0], [0.5, 0.1], [0.0, 0.0], [0.5, -0.1], [1.0, 0.0]]))
-    airfoils = {"r": Airfoil("circle", circle()), "a": wing}
-    stations = tuple(Station(eta, airfoils[kind]) for eta, kind in zip(etas, kinds, strict=True))
-    assert root_end(blade(stations=stations)) == expected
+def test_planes_turn_over_the_same_span_however_many_stations_there_are():
+    """Files of nodes have many airfoils, round ones and others, where a definition has two."""
+    definition = read("iea15mw")
+    first, second, *others = definition.stations
+    middle = Station(0.01, first.airfoil)
+    nearly = Station(0.03, Airfoil("oval", first.airfoil.coordinates * [1.0, 0.99]))
+    for stations in ((first, *others), (first, middle, second, nearly, *others)):
+        assert root_end(replace(definition, stations=stations)) == root_end(definition) == 0.02
+    assert root_end(replace(definition, stations=tuple(others))) == 0.0
 
 
 def blade(**changes) -> BladeDefinition:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         Station,
     )
     from bladegen.definition.fair_planform import PlanformFairing
+    from bladegen.definition.structure.structure import Layer, Material, Structure, Web
     from bladegen.errors import BladegenError, Finding
     from bladegen.exports.definitions import write
     from bladegen.exports.exporters import export
@@ -50,12 +51,16 @@ _HOME = {
     "Distribution": "definition.distribution",
     "Family": "families.family",
     "Finding": "errors",
+    "Layer": "definition.structure.structure",
+    "Material": "definition.structure.structure",
     "ParametricBlade": "parametric.model",
     "PlanformFairing": "definition.fair_planform",
     "ReferenceAxis": "definition.blade_definition",
     "Rotor": "definition.blade_definition",
     "ShapeSpace": "shapes.shape_space",
     "Station": "definition.blade_definition",
+    "Structure": "definition.structure.structure",
+    "Web": "definition.structure.structure",
     "Window": "blade.changes.deformation",
     "bundled": "formats.bundled",
     "export": "exports.exporters",
@@ -74,12 +79,16 @@ __all__ = [
     "Distribution",
     "Family",
     "Finding",
+    "Layer",
+    "Material",
     "ParametricBlade",
     "PlanformFairing",
     "ReferenceAxis",
     "Rotor",
     "ShapeSpace",
     "Station",
+    "Structure",
+    "Web",
     "Window",
     "__version__",
     "bundled",

@@ -21,6 +21,7 @@ from bladegen.definition.distribution import (
     united,
 )
 from bladegen.definition.reference_axis import ReferenceAxis
+from bladegen.definition.structure.structure import Structure
 from bladegen.errors import DefinitionError, Finding, visible
 from bladegen.support.arguments import amount, instance, numbers, shown
 from bladegen.support.arrays import Array, ArrayLike, readonly
@@ -183,6 +184,8 @@ class BladeDefinition:
         Thickness over chord; where given it rules between stations.
     rotor : Rotor
         Facts on the rotor.
+    structure : Structure, optional
+        Webs, layers and materials inside the skin; they shape nothing.
     description, source, format : str
         Free text; the file it was read from, and in which format that is.
     findings : tuple of Finding
@@ -199,6 +202,7 @@ class BladeDefinition:
     section_offset_x: Distribution | None = None
     relative_thickness: Distribution | None = None
     rotor: Rotor = Rotor()
+    structure: Structure | None = None
     description: str = ""
     source: str = ""
     format: str = ""
@@ -255,6 +259,10 @@ class BladeDefinition:
         for name, kind in (("axis", ReferenceAxis), ("rotor", Rotor)):
             must = f"a bladegen.{kind.__name__}"
             instance(getattr(self, name), kind, f"{self.name}: {name}", must, DefinitionError)
+        if self.structure is not None:
+            must = "a bladegen.Structure or None"
+            field = f"{self.name}: structure"
+            instance(self.structure, Structure, field, must, DefinitionError)
 
     def _require_positive(self, field: str, quantity: Distribution, unit: str) -> None:
         bad = np.flatnonzero(quantity.values < SMALLEST_SIZE)

@@ -236,9 +236,10 @@ def _feed(digest: Any, value: Any) -> None:
     if is_dataclass(value) and not isinstance(value, type):
         digest.update(type(value).__name__.encode())
         for entry in fields(value):
-            if entry.name not in UNCOUNTED:
+            part = getattr(value, entry.name)
+            if entry.name not in UNCOUNTED and not (part is None and entry.name in LATER):
                 digest.update(entry.name.encode())
-                _feed(digest, getattr(value, entry.name))
+                _feed(digest, part)
     elif isinstance(value, np.ndarray):
         digest.update(f"{value.dtype.str}{value.shape}".encode())
         digest.update(np.ascontiguousarray(value).tobytes())
@@ -256,4 +257,5 @@ def _feed(digest: Any, value: Any) -> None:
         digest.update(repr(value).encode())
 
 
+LATER = ("structure",)  # of definitions: without it they count as before there was one
 UNCOUNTED = ("source", "format", "findings", "description", "about", "command")

@@ -138,7 +138,12 @@ class Node:
             self.problem(f"{len(places) - SHOWN_ENTRIES} more entries like these")
 
     def distribution(
-        self, allowed: Range, *, factor: float = 1.0, rising: bool = False
+        self,
+        allowed: Range,
+        *,
+        factor: float = 1.0,
+        rising: bool = False,
+        partial: bool = False,
     ) -> Distribution | None:
         """Return the quantity that `grid` and `values` give.
 
@@ -150,6 +155,8 @@ class Node:
             From the file's unit to metres, radians or fractions.
         rising : bool
             Values must increase.
+        partial : bool
+            A grid need not reach root and tip: there is nothing of the quantity beyond its ends.
         """
         grid, values = self["grid"].span_fractions(), self["values"].numbers(allowed)
         if grid is None or values is None:
@@ -169,7 +176,7 @@ class Node:
         if repeated.size:
             self.finding(f"{len(repeated)} repeated entries dropped")
             grid, values = np.delete(grid, repeated), np.delete(values, repeated)
-        if grid[0] > 0 or grid[-1] < 1:
+        if not partial and (grid[0] > 0 or grid[-1] < 1):
             self.finding(f"grid runs {grid[0]:g} to {grid[-1]:g}; beyond it the end value is held")
         return Distribution(grid, factor * values)
 

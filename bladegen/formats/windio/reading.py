@@ -19,6 +19,7 @@ from bladegen.definition.blade_definition import (
     Station,
 )
 from bladegen.definition.by_thickness import stations_by_thickness
+from bladegen.definition.structure.structure import Structure
 from bladegen.errors import DefinitionError
 from bladegen.formats.airfoils.by_name import airfoils
 from bladegen.formats.airfoils.contours import thickness
@@ -69,6 +70,8 @@ class Layout:
         The unit of angle [rad].
     turn : Range
         The angles allowed, a quarter turn, in that unit.
+    structure : callable
+        From the document to what lies inside the skin; notes what it leaves out.
     """
 
     version: str
@@ -80,6 +83,7 @@ class Layout:
     tilt: tuple[tuple[str, ...], ...]
     angle: float
     turn: Range
+    structure: Callable[[Node], Structure | None]
 
 
 def recognises(document: object, layout: Layout) -> bool:
@@ -117,6 +121,7 @@ def read(root: Node, path: Path, layout: Layout) -> BladeDefinition | None:
     library = airfoils(root["airfoils"], [(e.name, e.node) for e in entries], layout.thickness)
     stations = _stations(entries, library, rthick)
     rotor = _rotor(root, layout)
+    structure = layout.structure(root)
     if root.notes.problems or not (chord and twist and axis and stations):
         return None
     title = root.value.get("name")
@@ -131,6 +136,7 @@ def read(root: Node, path: Path, layout: Layout) -> BladeDefinition | None:
         pitch_axis=pitch_axis,
         relative_thickness=rthick,
         rotor=rotor,
+        structure=structure,
         description=title if isinstance(title, str) else "",
         source=str(path),
         findings=tuple(root.notes.findings),

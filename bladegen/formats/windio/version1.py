@@ -10,7 +10,7 @@ from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distr
 from bladegen.formats.airfoils.unique_names import uniquely_named
 from bladegen.formats.common.document import Node, Range
 from bladegen.formats.common.redefinition import missed, sampled
-from bladegen.formats.windio import reading, writing
+from bladegen.formats.windio import reading, structure1, writing
 from bladegen.formats.windio.reading import Entry, Layout
 from bladegen.formats.windio.writing import Document, Note
 from bladegen.support.arrays import Array
@@ -48,6 +48,7 @@ LAYOUT = Layout(
     ),
     angle=1.0,
     turn=Range(-math.pi / 2, math.pi / 2, "rad"),
+    structure=structure1.read,
 )
 recognises = partial(reading.recognises, layout=LAYOUT)
 read = partial(reading.read, layout=LAYOUT)

@@ -18,7 +18,7 @@ from bladegen.definition.thickness import ruled
 from bladegen.formats.airfoils.unique_names import uniquely_named
 from bladegen.formats.common.document import FRACTION, Node, Range
 from bladegen.formats.common.redefinition import missed, sampled
-from bladegen.formats.windio import reading, writing
+from bladegen.formats.windio import reading, structure2, writing
 from bladegen.formats.windio.reading import Entry, Layout
 from bladegen.formats.windio.writing import Document, Note
 
@@ -51,6 +51,7 @@ LAYOUT = Layout(
     tilt=(("components", "drivetrain", "outer_shape", "uptilt"),),
     angle=math.pi / 180.0,
     turn=Range(-90.0, 90.0, "deg"),
+    structure=structure2.read,
 )
 recognises = partial(reading.recognises, layout=LAYOUT)
 read = partial(reading.read, layout=LAYOUT)

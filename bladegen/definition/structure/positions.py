@@ -1,0 +1,107 @@
+"""Places on the outline of a section, by rule: where layers start and end, where webs stand.
+
+A place is a fraction of the arc: 0 at the trailing edge of the suction side, 1 at that of the
+pressure side, about 0.5 at the leading edge (windIO's `nd_arc`).  A rule says how it is found on
+any section, be it of the blade it was made for or of a perturbed one.
+"""
+
+from dataclasses import dataclass
+
+from bladegen.definition.distribution import OVER_SPAN, Distribution
+from bladegen.errors import DefinitionError
+from bladegen.support.arguments import amount, instance, one_of
+from bladegen.support.values import brief
+
+__all__ = ["LEADING_EDGE", "Arc", "LeadingEdge", "PlaneCut", "Position", "Shifted", "base_of"]
+
+SIDES = ("suction", "pressure")
+FRAMES = ("root", "chord")
+
+
+@dataclass(frozen=True, repr=False)
+class Arc:
+    """A fraction of the arc over span; nothing lies outside its grid."""
+
+    fraction: Distribution
+
+    def __post_init__(self) -> None:
+        instance(self.fraction, Distribution, "arc: fraction", OVER_SPAN, DefinitionError)
+
+    __repr__ = brief
+
+
+@dataclass(frozen=True)
+class LeadingEdge:
+    """The leading edge: the blade's own landmark."""
+
+
+LEADING_EDGE = LeadingEdge()
+
+
+@dataclass(frozen=True, repr=False)
+class PlaneCut:
+    """Where a plane along the blade cuts one side of a section.
+
+    Parameters
+    ----------
+    side : str
+        "suction" or "pressure".
+    offset : Distribution
+        From the axis toward the trailing edge, normal to the plane [m]; there is no plane outside
+        its grid.
+    rotation : Distribution, optional
+        By which sections are turned about z, right-handed, before they are cut [rad]; 0 if None.
+    frame : str
+        Whose y is normal to the plane: "root", the blade's, or "chord", that along the chord.
+    through : pair of float, optional
+        Span fractions of two points of the reference axis, through which the plane without offset
+        goes; None: it follows the axis.
+    """
+
+    side: str
+    offset: Distribution
+    rotation: Distribution | None = None
+    frame: str = "root"
+    through: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        one_of(self.side, SIDES, "plane: side", DefinitionError)
+        one_of(self.frame, FRAMES, "plane: frame", DefinitionError)
+        instance(self.offset, Distribution, "plane: offset", OVER_SPAN, DefinitionError)
+
+    __repr__ = brief
+
+
+@dataclass(frozen=True, repr=False)
+class Shifted:
+    """A place so far from another, toward the pressure side's trailing edge.
+
+    Parameters
+    ----------
+    base : Position
+        The other place.
+    width : Distribution
+        A length along the skin [m]; 0 outside its grid.
+    times : float
+        Which share of it lies between: 0.5 and -0.5 are the ends of a strip about its middle.
+    """
+
+    base: "Position"
+    width: Distribution
+    times: float = 1.0
+
+    def __post_init__(self) -> None:
+        instance(self.width, Distribution, "shifted: width", OVER_SPAN, DefinitionError)
+        amount(self.times, "shifted: times", DefinitionError)
+
+    __repr__ = brief
+
+
+Position = Arc | LeadingEdge | PlaneCut | Shifted
+
+
+def base_of(position: Position) -> Position:
+    """Return the place that another one rests on, through all its widths."""
+    while isinstance(position, Shifted):
+        position = position.base
+    return position

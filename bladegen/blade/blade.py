@@ -99,6 +99,7 @@ class Blade:
     plot, mesh, export, point = outputs.plot, outputs.mesh, outputs.export, outputs.point
     stations = outputs.stations
     volume, _repr_html_ = cached_property(outputs.volume), outputs.html
+    layup = cached_property(outputs.layup)
     _crowding = cached_property(outputs.crowding)
 
     @classmethod

@@ -23,7 +23,7 @@ from bladegen.support.services import service, shown_by
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
-__all__ = ["crowding", "export", "html", "mesh", "plot", "point", "stations", "volume"]
+__all__ = ["crowding", "export", "html", "layup", "mesh", "plot", "point", "stations", "volume"]
 
 Tip = Callable[..., Any]
 
@@ -126,6 +126,11 @@ def volume(blade: Any) -> float:
     """The volume [m3] that the sections enclose, as `bladegen info` and `check` show it."""
     enclosed: float = service("volume")(blade)
     return enclosed
+
+
+def layup(blade: Any) -> Any:
+    """What lies inside the skin on the blade's sections (`bladegen.layup.layup.Layup`), or None."""
+    return service("layup")(blade)
 
 
 html = shown_by("blade_html")

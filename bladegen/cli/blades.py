@@ -2,13 +2,17 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from bladegen.cli.options.common import Airfoils, Json
 from bladegen.cli.terminal import print_figures, print_findings, print_table
+from bladegen.errors import BladegenError
 from bladegen.formats.bundled import Facts, bundled, facts
+
+if TYPE_CHECKING:
+    from bladegen.definition.blade_definition import BladeDefinition
 
 __all__ = ["info", "list_blades"]
 
@@ -57,6 +61,8 @@ def info(
     definition = read(blade, airfoils=airfoils)
     figures = definition_figures(definition)
     figures |= {} if made is None else {"made_from": made.text}
+    if definition.structure is not None:
+        figures |= _inside(definition, figures["findings"])
     if as_json:
         typer.echo(json.dumps(figures, indent=2))
         return
@@ -66,7 +72,31 @@ def info(
         station_rows(definition),
         title="stations",
     )
+    if "layers" in figures:
+        from bladegen.views.tables import layer_rows
+
+        print_table(
+            ["layer", "material", "on", "eta", "thickest mm", "kg"],
+            layer_rows(figures),
+            title=f"structure, webs: {', '.join(figures['webs']) or 'none'}",
+        )
     print_findings(figures["findings"])
+
+
+def _inside(definition: "BladeDefinition", findings: list[str]) -> dict[str, Any]:
+    """Return what lies inside the skin, and add to `findings` what does not fit there."""
+    from bladegen.blade.blade import Blade
+    from bladegen.views.tables import layup_figures
+
+    try:
+        layup = Blade.from_definition(definition).layup
+    except BladegenError as error:
+        findings.append(
+            f"structure: its mass is not known, since the sections cannot be made: {error}"
+        )
+        return {}
+    findings += map(str, layup.findings)
+    return layup_figures(layup)
 
 
 def _made_by(path: Path) -> Any:

@@ -94,6 +94,7 @@ def check_blade(blade: Blade) -> Check:
     finished = blade.trailing_edge(profiles, blade.chord(eta))
     built = SectionSplines(blade.u).fit(finished)
     added = _added(blade, eta, profiles, finished)
+    layup = blade.layup
     figures: dict[str, Any] = {
         "stations": len(blade.eta),
         "landmarks": len(blade.u),
@@ -108,9 +109,15 @@ def check_blade(blade: Blade) -> Check:
         "edge_adds_volume": added,
         "airfoils_moved_by_chord": max((c.moved for c in blade.contours or ()), default=0.0),
         **_smoothness(blade),
+        **({} if layup is None else {"structure_mass_kg": layup.mass}),
         "findings": [
             str(finding)
-            for finding in (*blade.findings, *_thickened(blade, added), *_wiggles(blade))
+            for finding in (
+                *blade.findings,
+                *_thickened(blade, added),
+                *_wiggles(blade),
+                *(() if layup is None else layup.findings),
+            )
         ],
     }
     problems = [

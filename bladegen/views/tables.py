@@ -8,11 +8,14 @@ from bladegen.definition.blade_definition import BladeDefinition, Distribution
 from bladegen.support.arrays import Array
 
 if TYPE_CHECKING:
+    from bladegen.layup.layup import Layup
     from bladegen.shapes.shape_space import ShapeSpace
 
 __all__ = [
     "definition_figures",
     "digits",
+    "layer_rows",
+    "layup_figures",
     "megabytes",
     "report_rows",
     "shown",
@@ -104,6 +107,46 @@ def station_rows(definition: BladeDefinition) -> list[list[str]]:
 def _between(quantity: Distribution, eta: Array) -> Array:
     """Interpolate linearly: enough for three digits on the screen, without loading scipy."""
     return np.interp(eta, quantity.grid, quantity.values)
+
+
+def layup_figures(layup: "Layup") -> dict[str, Any]:
+    """Return what lies inside the skin, and what it weighs by its layers alone."""
+    structure, masses = layup.structure, layup.layer_masses
+    return {
+        "structure_mass_kg": layup.mass,
+        "structure_centre_z_m": float(layup.centre[2]),
+        "webs": [web.name for web in structure.webs],
+        "materials": [
+            {"name": name, "mass_kg": mass} for name, mass in layup.material_masses.items()
+        ],
+        "layers": [
+            {
+                "name": layer.name,
+                "material": layer.material,
+                "web": layer.web,
+                "thickest_mm": 1e3 * float(layer.thickness.values.max()),
+                "from_eta": layer.extent[0],
+                "to_eta": layer.extent[1],
+                "mass_kg": masses[layer.name],
+            }
+            for layer in structure.layers
+        ],
+    }
+
+
+def layer_rows(figures: dict[str, Any]) -> list[list[str]]:
+    """Return a row a layer of `layup_figures`: name, material, where, span, thickness, mass."""
+    return [
+        [
+            layer["name"],
+            layer["material"],
+            layer["web"] or "skin",
+            f"{layer['from_eta']:.3g} to {layer['to_eta']:.3g}",
+            digits(layer["thickest_mm"], 1),
+            f"{layer['mass_kg']:.0f}",
+        ]
+        for layer in figures["layers"]
+    ]
 
 
 def report_rows(report: dict[str, Any]) -> list[list[str]]:

@@ -7,7 +7,7 @@ import numpy as np
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array
 
-__all__ = ["curve", "edge", "face", "filled", "line", "surface"]
+__all__ = ["curve", "edge", "face", "filled", "line", "surface", "wire"]
 
 
 def surface(poles: Array, u_knots: Array, v_knots: Array) -> Any:
@@ -74,14 +74,21 @@ def line(start: Array, end: Array) -> Any:
     return BRepBuilderAPI_MakeEdge(gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist())).Edge()
 
 
+def wire(edges: list[Any]) -> Any:
+    """Make the wire of edges that follow one another."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
+
+    maker = BRepBuilderAPI_MakeWire()
+    for one in edges:
+        maker.Add(one)
+    return maker.Wire()
+
+
 def filled(edges: list[Any]) -> Any:
     """Make the plane face that a closed loop of edges encloses."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 
-    wire = BRepBuilderAPI_MakeWire()
-    for one in edges:
-        wire.Add(one)
-    made = BRepBuilderAPI_MakeFace(wire.Wire(), True)
+    made = BRepBuilderAPI_MakeFace(wire(edges), True)
     if not made.IsDone():
         raise CadError("an end of the blade does not lie in a plane")
     return made.Face()

@@ -47,7 +47,8 @@ class Part:
     shape : TopoDS_Shape
         The shape [mm].
     pieces : sequence of (str, TopoDS_Shape, colour)
-        Its faces or curves by name; colours are sRGB, 0 to 255, or None.
+        Its faces by name, or curves, which go by their part's ("" here); colours are sRGB, 0 to
+        255, or None.
     """
 
     name: str
@@ -180,6 +181,8 @@ def _name_pieces(writer: Any, parts: Sequence[Part]) -> None:
     process = writer.WS().TransferWriter().FinderProcess()
     for part in parts:
         for name, piece, _ in part.pieces:
+            if not name:
+                continue
             entity = STEPConstruct.FindEntity_s(process, piece)
             entity.SetName(TCollection_HAsciiString(_spelt(name)))
 

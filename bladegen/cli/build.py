@@ -26,6 +26,15 @@ from bladegen.errors import BladegenError
 __all__ = ["build", "perturb"]
 
 
+CURVES = "curves.step"
+Curves = Annotated[
+    bool,
+    typer.Option(
+        "--curves", help="Stations, edges and axes as named curves too, NAME.curves.step."
+    ),
+]
+
+
 @grouped
 def build(
     blade: BladeName,
@@ -34,6 +43,7 @@ def build(
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
     producing: Producing = PRODUCING,
+    curves: Curves = False,
     rotor: Annotated[
         bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
     ] = False,
@@ -68,7 +78,7 @@ def build(
             else metres(hub_radius, "hub-radius", example="2m"),
             cone=None if precone is None else radians(precone, "precone"),
         )
-    _build(made, output, suffixes, options, whole)
+    _build(made, output, _with_curves(suffixes, curves), options, whole)
 
 
 @grouped
@@ -80,6 +90,7 @@ def perturb(
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
     producing: Producing = PRODUCING,
+    curves: Curves = False,
     mirror: Mirror = False,
 ) -> None:
     """Perturb a blade consistently and build it."""
@@ -90,7 +101,16 @@ def perturb(
         )
     options, suffixes = producing.options(), suffixes_of(formats)
     made = changes.applied(making.blade(blade, landmarks))
-    _build(made.mirror_image() if mirror else made, output, suffixes, options)
+    made = made.mirror_image() if mirror else made
+    _build(made, output, _with_curves(suffixes, curves), options)
+
+
+def _with_curves(formats: tuple[str, ...], asked: bool) -> tuple[str, ...]:
+    """Return the formats, those by default if none are given, and curves if these are asked for."""
+    from bladegen.exports.build import DEFAULT_FORMATS
+
+    formats = formats or DEFAULT_FORMATS
+    return (*formats, CURVES) if asked and CURVES not in formats else formats
 
 
 def _build(
@@ -98,7 +118,6 @@ def _build(
 ) -> None:
     """Build a blade's files and print what was made, a missed tolerance included."""
     from bladegen.errors import PromiseError
-    from bladegen.exports.build import DEFAULT_FORMATS
     from bladegen.exports.build import build as build_files
 
     miss = None
@@ -107,7 +126,7 @@ def _build(
             build_files(
                 blade,
                 output,
-                formats=formats or DEFAULT_FORMATS,
+                formats=formats,
                 options=options,
                 rotor=rotor,
                 progress=progress,

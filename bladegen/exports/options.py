@@ -26,6 +26,7 @@ class Kind(StrEnum):
     """What a file holds, and so what can be measured on it."""
 
     solid = "solid"
+    curves = "curves"
     triangles = "triangles"
     grid = "grid"
     definition = "definition"
@@ -112,14 +113,14 @@ class Options:
     def settings(self, kind: Kind, suffix: str) -> dict[str, str]:
         """Return the options that matter to a file of a kind and suffix, in words."""
         found: dict[str, str] = {}
-        if kind is Kind.solid:
+        if kind in (Kind.solid, Kind.curves):
             if self.sections is None:
                 found["tolerance_mm"] = word(1e3 * self.tolerance)
             else:
                 found["solid_sections"] = word(self.sections)
-            if self.split:
+            if self.split and kind is Kind.solid:
                 found["split"] = "yes"
-            if suffix in (".step", ".stp"):
+            if suffix.endswith((".step", ".stp")):
                 found["schema"] = self.step_schema
             if suffix != ".brep":  # which has no place for it
                 told = {"author": self.author, "organisation": self.organisation}
@@ -128,7 +129,7 @@ class Options:
             found |= {f"grid_{key}": word(value) for key, value in asdict(self.spacing).items()}
         if kind in (Kind.triangles, Kind.table):
             found["stations"] = word(self.stations)
-        if kind in (Kind.solid, Kind.triangles, Kind.grid):
+        if kind in (Kind.solid, Kind.triangles, Kind.grid):  # which curves end before
             found["tip"] = word(self.tip)
         if kind in (Kind.triangles, Kind.grid):
             found["unit"] = _FIXED_UNITS.get(suffix, self.unit)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-from bladegen.cad import exchange
+from bladegen.cad import curves, exchange
 from bladegen.errors import ExportError
 from bladegen.exports.definitions import marking
 from bladegen.exports.options import UNITS, Kind
@@ -66,6 +66,12 @@ def _write_iges(products: Products, path: Path) -> None:
 
 def _write_brep(products: Products, path: Path) -> None:
     exchange.write_brep(products.solid, path)
+
+
+def _write_curves(products: Products, path: Path) -> None:
+    options = products.options
+    told = {"schema": options.step_schema, **options.told}
+    curves.write_curves(products.solid, products.blade, path, **told)
 
 
 def _write_stl(products: Products, path: Path) -> None:
@@ -149,6 +155,11 @@ FORMATS = {
     ".iges": Format(Kind.solid, "IGES 5.3, one closed solid, mm", _write_iges),
     ".igs": Format(Kind.solid, "the same as .iges", _write_iges),
     ".brep": Format(Kind.solid, "OCCT's own BREP, one closed solid, mm", _write_brep),
+    ".curves.step": Format(
+        Kind.curves,
+        "STEP, stations, edges and axes as named curves, mm",
+        _write_curves,
+    ),
     ".stl": Format(Kind.triangles, "STL, binary triangles, m (or mm)", _write_stl),
     ".glb": Format(Kind.triangles, "glTF binary, triangles for the web, m", _write_glb),
     ".ply": Format(Kind.triangles, "PLY, binary triangles, m (or mm)", _write_ply),

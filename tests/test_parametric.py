@@ -114,6 +114,17 @@ def test_planes_that_turn_from_the_flange_follow_the_prebend():
     assert_allclose(model.sections(x), bent.sections(model.eta), atol=1e-12)
 
 
+def test_derivatives_of_a_fair_planform_are_exact_too():
+    definition = bg.read("iea15mw")
+    blade = bg.Blade.from_definition(definition, landmarks=101, fair_planform=bg.PlanformFairing())
+    parameters = ("prebend_scale", "chord_scale", "twist_scale", "thickness")
+    model = bg.ParametricBlade(blade, None, parameters, SPANS)
+    x = np.array([1.2, 1.05, 0.9, 1.02])
+    agree(model.jacobian(x), differences(model.sections, x))
+    change = dict(zip(parameters, x.tolist(), strict=True))
+    assert_allclose(model.sections(x), blade.perturbed(**change).sections(SPANS), atol=1e-11)
+
+
 def test_sections_that_stay_normal_to_z_follow_the_prebend():
     definition = bg.read("iea15mw")
     blade = bg.Blade.from_definition(definition, planes=normal_to_z)

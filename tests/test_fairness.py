@@ -1,5 +1,7 @@
 """Curvatures are those of surfaces that are known, and stripes those of exact normals."""
 
+import json
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -183,6 +185,24 @@ def test_what_has_no_normals_has_no_stripes(blade, tmp_path, monkeypatch):
     )
     assert isinstance(answer.exception, BladegenError)
     assert "stripes are drawn on one file" in str(answer.exception)
+
+
+def test_check_makes_a_definition_as_it_is_told_and_takes_files_as_they_are(tmp_path):
+    def checked(*words):
+        return CliRunner().invoke(commands.app, ["check", *words])
+
+    jumps = [
+        json.loads(checked("dtu10mw", "--json", "--path", "spline", *how).output)
+        for how in ((), ("--fair-planform", "0.1%"))
+    ]
+    assert all(one["crease_deg"] < 0.02 for one in jumps)
+    assert jumps[1]["curvature_jump_per_m"] < 0.2 * jumps[0]["curvature_jump_per_m"]
+    (tmp_path / "one.stl").write_text("solid\nendsolid\n")
+    for words, said in (
+        ((str(tmp_path / "one.stl"), "--path", "spline"), "is no definition"),
+        (("dtu10mw", "nrel5mw", "--path", "spline"), "made as the other one was"),
+    ):
+        assert said in str(checked(*words).exception)
 
 
 def _surface(blade):

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.options.common import MAKING, Airfoils, Json, ending_in
+from bladegen.cli.options.common import MAKING, Json, Making, ending_in
 from bladegen.cli.options.groups import COMMAND, grouped
 from bladegen.cli.terminal import print_figures, print_findings, print_table, progress_bar
 from bladegen.errors import BladegenError
@@ -37,8 +37,8 @@ def check(
             callback=ending_in(".png"),
         ),
     ] = None,
-    airfoils: Airfoils = None,
     as_json: Json = False,
+    making: Making = MAKING,
 ) -> None:
     """Measure a solid, a mesh or a blade definition, or the distance between two of them.
 
@@ -47,14 +47,21 @@ def check(
     if other is not None:
         if zebra is not None:
             raise BladegenError("zebra: stripes are drawn on one file; leave the other one out")
-        _compare(file, other, screenshot, airfoils, as_json)
+        if replace(making, airfoils=None) != MAKING:
+            raise BladegenError(
+                f"{other}: of two, a definition is made as the other one was; build it as it shall "
+                "be, and check its file"
+            )
+        _compare(file, other, screenshot, making, as_json)
         return
     if screenshot is not None:
         raise BladegenError("screenshot: a picture is made of two files; name another one")
     from bladegen.exports.inventory import made_by
     from bladegen.measures import checks
 
-    blade = blade_of(file, airfoils)
+    blade = blade_of(file, making)
+    if blade is None and replace(making, airfoils=None) != MAKING:
+        raise BladegenError(f"{file}: is no definition; how a blade is made matters to these alone")
     result = checks.check_file(Path(file)) if blade is None else checks.check_blade(blade)
     if zebra is not None:
         _stripes(Path(file) if blade is None else blade, zebra)
@@ -84,7 +91,7 @@ def check(
         raise BladegenError(f"{result.source}: {'; '.join(result.problems)}")
 
 
-def blade_of(file: str, airfoils: Path | None = None) -> Any:
+def blade_of(file: str, making: Making = MAKING) -> Any:
     """Return the blade that a name or a definition means, None for other files."""
     from bladegen.formats.bundled import bundled
     from bladegen.formats.reading import is_read
@@ -92,7 +99,7 @@ def blade_of(file: str, airfoils: Path | None = None) -> Any:
 
     suffix = Path(file).suffix.lower()
     if file in bundled() or not suffix or (suffix not in SOLIDS + MESHES and is_read(Path(file))):
-        return replace(MAKING, airfoils=airfoils).blade(file)
+        return making.blade(file)
     return None
 
 
@@ -108,9 +115,7 @@ def _stripes(thing: Any, target: Path) -> None:
             draw(sheets_of(thing), thing.name, temporary)
 
 
-def _compare(
-    file: str, other: str, screenshot: Path | None, airfoils: Path | None, as_json: bool
-) -> None:
+def _compare(file: str, other: str, screenshot: Path | None, making: Making, as_json: bool) -> None:
     """Measure two surfaces against each other and print, or draw, what was found."""
     from bladegen.cli.provenance import alike
     from bladegen.exports.marks import marked
@@ -119,7 +124,7 @@ def _compare(
 
     with progress_bar() as progress:
         progress("reading")
-        things = [blade_of(name, airfoils) or Path(name) for name in (file, other)]
+        things = [blade_of(name, making) or Path(name) for name in (file, other)]
         things, tips, differing = alike(things)
         one, two = (surface_of(*pair) for pair in zip(things, tips, strict=True))
         progress("measuring distances")

@@ -1,5 +1,6 @@
 """`bladegen preview` and `bladegen plot`: blades to look at."""
 
+from dataclasses import replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -113,7 +114,7 @@ def preview(
             raise BladegenError(
                 "compare: takes two files or blades, --screenshot or --html, and nothing else"
             )
-        _compare(*compare, screenshot, html, making.airfoils)
+        _compare(*compare, screenshot, html, replace(MAKING, airfoils=making.airfoils))
         return
     if blade is None:
         raise BladegenError("preview: name a blade (`bladegen list` shows the bundled ones)")
@@ -198,7 +199,7 @@ def _sweep(
 
 
 def _compare(
-    one: str, other: str, screenshot: Path | None, html: Path | None, airfoils: Path | None
+    one: str, other: str, screenshot: Path | None, html: Path | None, plain: Making
 ) -> None:
     """Show a surface coloured by its distance from another one."""
     from bladegen.exports.marks import marked
@@ -210,7 +211,7 @@ def _compare(
     title = f"{one} against {other}"
     with progress_bar() as progress:
         progress("reading")
-        things = [blade_of(name, airfoils) or Path(name) for name in (one, other)]
+        things = [blade_of(name, plain) or Path(name) for name in (one, other)]
         surfaces = [comparison.surface_of(thing) for thing in things]
         made = compared_of(things[0], things[1], command=COMMAND.get())
         progress("measuring distances")

@@ -5,7 +5,8 @@
 For the bundled blades, or for those named: the solid of either path at 0.05 and 1 mm with airfoils
 as faired, and as given beside it (poles, STEP size, largest deviation over all faces, RMS); the
 airfoils' roughness; and what bends over span that the definition does not, with widths of their
-own, and with those that the path happens to have beside it.
+own, and with those that the path happens to have beside it; and how fair the surface is, with the
+planform as given and made fair.
 """
 
 import tempfile
@@ -17,6 +18,7 @@ from figures import figure, parser
 import bladegen as bg
 from bladegen.blade.lofting.paths import PATHS
 from bladegen.cad import exchange, solids
+from bladegen.measures.fairness import fairness
 from bladegen.measures.inflections import inflections
 from bladegen.measures.smoothness import edge_bulges
 from bladegen.plots import combs
@@ -60,6 +62,14 @@ def main() -> None:
         for what, find in (("bulges of the edge", edge_bulges), ("inflections", inflections)):
             found = {label: len(find(blade)) for label, blade in both.items()}
             figure(what, f"{own.name}, {path}", "", found)
+        fair = bg.Blade.from_definition(
+            bg.read(name), path=path, fair_planform=bg.PlanformFairing()
+        )
+        surfaces = {"fair planform": fairness(fair), "as given": fairness(own)}
+        jumps = {label: one.jump[0] for label, one in surfaces.items()}
+        varies = {label: one.spanwise for label, one in surfaces.items()}
+        figure("largest jump of spanwise curvature", f"{own.name}, {path}", "1/m", jumps)
+        figure("spanwise curvature varies by", f"{own.name}, {path}", "1/m", varies)
     for name in names:
         blade = bg.Blade.from_definition(bg.read(name))
         for one in combs.figures(blade):

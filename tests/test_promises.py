@@ -20,6 +20,7 @@ from bladegen.blade.edges import MinimumThickness
 from bladegen.cad import solids
 from bladegen.formats.baselines import baselines
 from bladegen.measures import properties
+from bladegen.measures.fairness import fairness
 from bladegen.measures.inflections import inflections
 from bladegen.measures.smoothness import creases, edge_bulges, edge_widths
 from bladegen.plots import combs
@@ -164,6 +165,17 @@ def test_bulges_and_inflections_are_as_many_as_the_page_says(row):
     passing = replace(own, edge_width=None)
     found = [len(f(b)) for f in (edge_bulges, inflections) for b in (passing, own)]
     assert found == [int(re.match(r"\d+", cell)[0]) for cell in row[2:6]]
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("row", bundled_rows("smoothness.md", "| | largest jump of spanwise"))
+def test_planforms_are_as_fair_as_the_page_says(row):
+    for how, jumps, varies in ((None, row[1], row[3]), (bg.PlanformFairing(), row[2], row[4])):
+        found = fairness(blade(row[0], "spline", fair_planform=how))
+        jump, eta = re.fullmatch(r"([\d.]+) \((?:eta = )?([\d.]+)\)", jumps).groups()
+        assert_shown(found.jump[0], jump)
+        assert_shown(found.jump[1], eta)
+        assert_shown(found.spanwise, varies)
 
 
 @pytest.mark.nightly

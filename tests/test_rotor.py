@@ -38,11 +38,21 @@ def test_leading_edges_go_first_clockwise_seen_from_upwind(blade, tmp_path, mirr
     rotor = rotor_of(blade, mirrored=mirrored)
     write_glb(rotor, mesh.from_blade(blade, stations=40), tmp_path / "r.glb")
     scene = trimesh.load_scene(tmp_path / "r.glb")
-    assert set(scene.graph.nodes_geometry) == {"blade 1", "blade 2", "blade 3", "spinner"}
+    assert set(scene.graph.transforms.children["rotor"]) == {
+        "blade 1",
+        "blade 2",
+        "blade 3",
+        "spinner",
+    }
+    upright = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])  # glTF has y up
     for name in ("blade 1", "blade 2", "blade 3"):
-        matrix, geometry = scene.graph[name]
-        solid = scene.geometry[geometry]
-        solid = trimesh.Trimesh(solid.vertices, solid.faces).apply_transform(matrix)
+        regions = []
+        for node in scene.graph.transforms.children[name]:
+            matrix, geometry = scene.graph[node]
+            part = scene.geometry[geometry]
+            regions.append(trimesh.Trimesh(part.vertices, part.faces).apply_transform(matrix))
+        assert len(regions) == 5
+        solid = trimesh.util.concatenate(regions).apply_transform(upright)
         solid.merge_vertices()
         assert solid.is_watertight
         assert solid.volume > 0

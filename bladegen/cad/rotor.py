@@ -21,8 +21,8 @@ from bladegen.cad.step_documents import NOBODY, Author, Part, Place
 from bladegen.cad.triangles import triangulated
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array
+from bladegen.surface.gltf import Standing, glb
 from bladegen.surface.mesh import TriangleMesh
-from bladegen.surface.mesh_files import assembled
 
 __all__ = ["Rotor", "rotor_of", "write_glb", "write_step"]
 
@@ -194,13 +194,15 @@ def write_glb(rotor: Rotor, mesh: TriangleMesh, path: Path) -> None:
     """Write a rotor as GLB: the same parts under the same names, metres."""
     blade = mesh
     if rotor.mirrored:
-        blade = TriangleMesh(mesh.vertices * np.array([1.0, -1.0, 1.0]), mesh.faces[:, ::-1])
-    parts = []
-    for number, (rotation, shift) in enumerate(zip(*rotor.placements(), strict=True), start=1):
-        parts.append((f"blade {number}", blade, rotation, shift))
+        vertices = mesh.vertices * np.array([1.0, -1.0, 1.0])
+        blade = replace(mesh, vertices=vertices, faces=mesh.faces[:, ::-1])
+    parts = [
+        Standing(f"blade {number}", blade, rotation, shift)
+        for number, (rotation, shift) in enumerate(zip(*rotor.placements(), strict=True), start=1)
+    ]
     spinner = triangulated(_spinner(rotor.spinner_radius).wrapped, DEFLECTION)
-    parts.append(("spinner", spinner, np.eye(3), np.zeros(3)))
-    path.write_bytes(assembled(parts))
+    parts.append(Standing("spinner", spinner, np.eye(3), np.zeros(3)))
+    path.write_bytes(glb("rotor", parts))
 
 
 def _spinner(radius: float) -> Any:

@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
 from bladegen.cad import curves, exchange
 from bladegen.errors import ExportError
 from bladegen.exports.definitions import marking
@@ -19,7 +21,7 @@ from bladegen.exports.products import Products
 from bladegen.formats import writing
 from bladegen.support.arguments import suggestion
 from bladegen.support.plugins import Offered, guarded, offered
-from bladegen.surface import mesh_files
+from bladegen.surface import gltf, mesh_files
 from bladegen.surface.grids import grid_files
 from bladegen.views import preview
 
@@ -92,7 +94,8 @@ def _write_ply(products: Products, path: Path) -> None:
 
 
 def _write_glb(products: Products, path: Path) -> None:
-    path.write_bytes(mesh_files.to_trimesh(products.mesh).export(file_type="glb"))
+    name = products.blade.name
+    path.write_bytes(gltf.glb(name, [gltf.Standing(name, products.mesh, np.eye(3), np.zeros(3))]))
 
 
 def _write_3mf(products: Products, path: Path) -> None:

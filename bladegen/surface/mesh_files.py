@@ -8,7 +8,6 @@ import io
 import re
 import uuid
 import zipfile
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from bladegen.surface.mesh import SECTIONS, TriangleMesh, from_blade
 from bladegen.surface.regions import REGIONS
 from bladegen.surface.tips import Tip, flat_tip
 
-__all__ = ["assembled", "obj_text", "read", "sound", "to_trimesh", "trimesh_of", "with_steady_ids"]
+__all__ = ["obj_text", "read", "sound", "to_trimesh", "trimesh_of", "with_steady_ids"]
 
 FARTHEST = 1e9  # of a vertex of a file, in its unit: products of three lengths stay finite
 
@@ -49,27 +48,6 @@ def obj_text(mesh: TriangleMesh, header: str, *, scale: float = 1.0) -> str:
         lines.append(f"g {REGIONS[number].replace(' ', '_')}")
         lines += [f"f {a} {b} {c}" for a, b, c in (mesh.faces[regions == number] + 1).tolist()]
     return "\n".join([f"# {header}", *lines, ""])
-
-
-def assembled(parts: Sequence[tuple[str, TriangleMesh, Array, Array]]) -> bytes:
-    """Return named meshes, each turned (3, 3) and shifted (3,) [m], as one GLB file's bytes.
-
-    Points are ``p @ rotation.T + shift``; a mesh that stands in several places is stored once.
-    """
-    import trimesh
-
-    scene = trimesh.Scene()
-    known: dict[int, str] = {}
-    for name, mesh, rotation, shift in parts:
-        move = np.eye(4)
-        move[:3, :3], move[:3, 3] = rotation, shift
-        if id(mesh) in known:
-            scene.graph.update(name, matrix=move, geometry=known[id(mesh)])
-        else:
-            scene.add_geometry(to_trimesh(mesh), node_name=name, geom_name=name, transform=move)
-            known[id(mesh)] = name
-    data: bytes = scene.export(file_type="glb")
-    return data
 
 
 def with_steady_ids(package: bytes) -> bytes:
@@ -116,6 +94,11 @@ def read(path: Path) -> Any:
     except Exception as error:  # trimesh's loaders raise whatever their parsers do
         text = f"{type(error).__name__} {error}"
         raise FileError(str(path), [f"is no mesh that can be read: {text}"]) from None
+    if kind == "glb":  # y is up there, and regions have vertices of their own
+        x, y, z = vertices.T
+        made = sound(path, np.stack([x, -z, y], axis=-1), faces)
+        made.merge_vertices()
+        return made
     return sound(path, vertices, faces, loaded)
 
 

@@ -1,5 +1,7 @@
 import inspect
-from dataclasses import fields
+import zipfile
+from dataclasses import fields, replace
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -91,6 +93,23 @@ def test_vtk_finds_the_regions(blade, made, suffix, tmp_path):
     areas = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     wanted = np.bincount(made.regions, areas)
     assert_allclose(np.bincount(number, np.abs(found["Area"])), wanted, rtol=1e-5)
+
+
+def test_3mf_gives_each_region_a_material(blade, made, tmp_path):
+    named = replace(blade, definition=replace(blade.definition, name='a<b> & "ö"'))
+    path = bg.export(named, tmp_path / "a.3mf", stations=60)
+    with zipfile.ZipFile(path) as package:
+        model = ElementTree.fromstring(package.read("3D/3dmodel.model"))
+    core = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+    (materials,) = model.iter(f"{core}basematerials")
+    assert [base.get("name") for base in materials] == list(REGIONS)
+    triangles = list(model.iter(f"{core}triangle"))
+    corners = [[int(one.get(key)) for key in ("v1", "v2", "v3")] for one in triangles]
+    assert np.array_equal(corners, made.faces)
+    assert np.array_equal([int(one.get("p1")) for one in triangles], made.regions)
+    assert {one.get("pid") for one in triangles} == {materials.get("id")}
+    (body,) = model.iter(f"{core}object")
+    assert body.get("name") == 'a<b> & "ö"'
 
 
 GRIDS = [name for name, row in FORMATS.items() if row.kind is Kind.grid]

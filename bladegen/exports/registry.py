@@ -100,7 +100,8 @@ def _write_glb(products: Products, path: Path) -> None:
 
 def _write_3mf(products: Products, path: Path) -> None:
     scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS["mm"])
-    path.write_bytes(mesh_files.with_steady_ids(scaled.export(file_type="3mf")))
+    package = mesh_files.with_steady_ids(scaled.export(file_type="3mf"))
+    path.write_bytes(mesh_files.with_materials(package, products.mesh, products.blade.name))
 
 
 def _write_vtp(products: Products, path: Path) -> None:
@@ -169,7 +170,9 @@ FORMATS = {
     ".obj": Format(
         Kind.triangles, "Wavefront OBJ, triangles in groups by region, m (or mm)", _write_obj
     ),
-    ".3mf": Format(Kind.triangles, "3MF, triangles for printing, mm", _write_3mf),
+    ".3mf": Format(
+        Kind.triangles, "3MF, triangles for printing, a material a region, mm", _write_3mf
+    ),
     ".vtp": Format(Kind.triangles, "VTK poly data, triangles for ParaView, m (or mm)", _write_vtp),
     ".p3d": Format(
         Kind.grid, "PLOT3D multi-block grid, Fortran unformatted, m (or mm)", _write_p3d

@@ -10,6 +10,7 @@ import uuid
 import zipfile
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -17,11 +18,21 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import FileError
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.mesh import SECTIONS, TriangleMesh, from_blade
-from bladegen.surface.regions import REGIONS
+from bladegen.surface.regions import COLOURS, REGIONS
 from bladegen.surface.tips import Tip, flat_tip
 
-__all__ = ["obj_text", "read", "sound", "to_trimesh", "trimesh_of", "with_steady_ids"]
+__all__ = [
+    "obj_text",
+    "read",
+    "sound",
+    "to_trimesh",
+    "trimesh_of",
+    "with_materials",
+    "with_steady_ids",
+]
 
+MODEL = "3D/3dmodel.model"  # of a 3MF file, the member with the mesh
+MATERIALS = 2  # its resource of materials; 1 is the object
 FARTHEST = 1e9  # of a vertex of a file, in its unit: products of three lengths stay finite
 
 
@@ -48,6 +59,36 @@ def obj_text(mesh: TriangleMesh, header: str, *, scale: float = 1.0) -> str:
         lines.append(f"g {REGIONS[number].replace(' ', '_')}")
         lines += [f"f {a} {b} {c}" for a, b, c in (mesh.faces[regions == number] + 1).tolist()]
     return "\n".join([f"# {header}", *lines, ""])
+
+
+def with_materials(package: bytes, mesh: TriangleMesh, name: str) -> bytes:
+    """Return a 3MF file of a mesh, its object named and each triangle of its region's material."""
+    assert mesh.regions is not None  # a blade's mesh has them
+    bases = "".join(
+        f'<base name="{region}" displaycolor="#{"".join(f"{part:02X}" for part in colour)}"/>'
+        for region, colour in COLOURS.items()
+    )
+    number = iter(mesh.regions.tolist())
+    result = io.BytesIO()
+    with (
+        zipfile.ZipFile(io.BytesIO(package)) as old,
+        zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as new,
+    ):
+        for info in old.infolist():
+            data = old.read(info)
+            if info.filename == MODEL:
+                materials = f'<resources><basematerials id="{MATERIALS}">{bases}</basematerials>'
+                data = data.replace(b"<resources>", materials.encode(), 1)
+                title = escape(name, {'"': "&quot;"}).encode("ascii", "xmlcharrefreplace")
+                told = b'name="%s" pid="%d" pindex="0"' % (title, MATERIALS)
+                data = data.replace(b'name="geometry_0"', told, 1)
+                data = re.sub(
+                    rb'(<triangle v1="\d+" v2="\d+" v3="\d+")',
+                    lambda found: found[1] + b' pid="%d" p1="%d"' % (MATERIALS, next(number)),
+                    data,
+                )
+            new.writestr(info, data)
+    return result.getvalue()
 
 
 def with_steady_ids(package: bytes) -> bytes:

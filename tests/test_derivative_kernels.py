@@ -13,18 +13,21 @@ from test_kernels import loaded
 import bladegen as bg
 from bladegen import parametric
 from bladegen.airfoils import characteristics
+from bladegen.airfoils.landmarks import landmarks, uniform
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.edges import MinimumThickness, Sharp
 from bladegen.curves import plane_maps
 from bladegen.parametric import coefficient_kernels, edge_slopes, kernels, section_slopes
 from bladegen.support import compiled
-from bladegen.variants import section_measures, sizes
-from strategies import box
+from bladegen.variants import nose_measures, section_measures, sizes
+from strategies import box, ellipse
 
 CHAIN = (
     compiled,
     plane_maps,
     characteristics,
     section_measures,
+    nose_measures,
     sizes,
     section_slopes,
     edge_slopes,
@@ -82,3 +85,37 @@ def test_where_the_baseline_has_two_noses_its_chord_lines_move_with_the_thicknes
     monkeypatch.setattr(parametric, "coefficient_kernels", plain()[0])
     assert_allclose(model.jacobian(x), exact, rtol=0, atol=1e-7 * np.abs(exact).max())
     assert_allclose(model.vjp(x, g)[4], np.sum(g * exact[..., 4]), rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("points", "low", "high"),
+    [
+        (box(201, np.array([0.0]))[0], 1.0, 1.0),
+        (box(201, np.array([2e-3]))[0], 1.0, 1.0),
+        (landmarks(ellipse(1.168), 201, spacing=uniform), 0.5, 0.99),
+        (landmarks(ellipse(1.16), 201, spacing=uniform), 0.05, 0.4),
+        (landmarks(ellipse(0.4), 201, spacing=uniform), 0.0, 0.0),
+    ],
+)
+def test_gradients_of_sections_with_round_noses_are_exact(points, low, high):
+    """Whatever the share of the mean of many points; against differences of numpy's measures."""
+    u = np.linspace(0.0, 1.0, 201)
+    splines = SectionSplines(u)
+    rng = np.random.default_rng(5)
+    waves = np.stack([np.sin((k + 1) * np.pi * u) for k in range(2)])
+    values = np.concatenate([points.T, waves, np.ones((1, 201))])
+    slopes = np.ascontiguousarray(splines.values(u, 1) @ values.T)
+    c = np.concatenate([np.eye(2), 1e-4 * rng.normal(size=(2, 2)), [[0.1, 0.2]]])
+
+    def measures(c):
+        curve = splines.fit((values.T @ c)[None])
+        return np.array([*curve.leading_edge[0], curve.chord[0], curve.thickness[0]])
+
+    assert low <= splines.fit((values.T @ c)[None]).shares[0] <= high
+    rows, spare = np.empty((4, 5, 2)), np.empty((2, 4, 5, 2))
+    section = section_measures.Section(u, slopes, c, np.ascontiguousarray((values.T @ c).T))
+    section_slopes.gradients(section, values, np.empty(201), rows, spare)
+    change, step = rng.normal(size=c.shape), 1e-6
+    found = [measures(c + h * change) - measures(c - h * change) for h in (step, 2.0 * step)]
+    wanted = (8.0 * found[0] - found[1]) / (12.0 * step)
+    assert_allclose(np.einsum("qfj,fj->q", rows, change), wanted, rtol=1e-6, atol=2e-6)

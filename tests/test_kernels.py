@@ -15,16 +15,16 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
 from bladegen.airfoils import characteristics
-from bladegen.airfoils.landmarks import landmarks
+from bladegen.airfoils.landmarks import landmarks, uniform
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.changes.deformation import AffineChange, Window
 from bladegen.blade.edges import MinimumThickness
 from bladegen.curves import plane_maps, polygons
 from bladegen.curves.crossing import crossing_sections
 from bladegen.support import compiled
-from bladegen.variants import kernels, section_measures, sizes
+from bladegen.variants import kernels, nose_measures, section_measures, sizes
 from bladegen.variants.batch import SectionBatch
-from strategies import airfoils, box
+from strategies import airfoils, box, ellipse
 
 COUNT = 101
 U = np.linspace(0.0, 1.0, COUNT)
@@ -45,7 +45,7 @@ def loaded(module, **names):
 @cache
 def plain():
     """The kernels as plain Python."""
-    modules = (compiled, plane_maps, characteristics, section_measures, sizes)
+    modules = (compiled, plane_maps, characteristics, section_measures, nose_measures, sizes)
     known = {module.__name__: module for module in modules}
     numba.config.DISABLE_JIT = True
     try:
@@ -54,7 +54,9 @@ def plain():
         loaded_looks = loaded(characteristics, **{"bladegen.curves.plane_maps": maps})
         looks = {"bladegen.airfoils.characteristics": loaded_looks}
         measured = loaded(section_measures, **looks)
-        inner = loaded(sizes, **{"bladegen.variants.section_measures": measured})
+        measured_by = {"bladegen.variants.section_measures": measured}
+        fronts = {"bladegen.variants.nose_measures": loaded(nose_measures, **measured_by)}
+        inner = loaded(sizes, **fronts)
         return loaded(kernels, **{"bladegen.variants.sizes": inner})
     finally:
         numba.config.DISABLE_JIT = False
@@ -153,11 +155,15 @@ def test_all_answers_about_crossings_occur_and_are_the_same_in_plain_code():
 
 @pytest.mark.parametrize("target", [0.9, 1.3])
 def test_noses_that_share_the_leading_edge_are_followed_as_by_numpy(target):
-    points = box(COUNT, np.array([0.0, 1e-6, -4e-6, 1e-5, 1e-3, 4e-3]))
+    boxes = box(COUNT, np.array([0.0, 1e-6, -4e-6, 1e-5, 1e-3, 4e-3]))
+    ovals = [landmarks(ellipse(t), COUNT, spacing=uniform) for t in (0.4, 1.165, 1.3)]
+    points = np.concatenate([boxes, ovals])
     splines = SectionSplines(U)
-    assert splines.fit(points).has_rivals.sum() >= 2
-    A, c = splines.normalising(points, np.full(6, target))
-    finished = MinimumThickness(0.002)(points @ A + c[:, None], np.full(6, CHORD[0, 0]))
+    shares = splines.fit(points).shares
+    assert shares[0] == 1.0
+    assert shares[-3] == 0.0 < shares[-2] < 1.0
+    A, c = splines.normalising(points, np.full(9, target))
+    finished = MinimumThickness(0.002)(points @ A + c[:, None], np.full(9, CHORD[0, 0]))
     for by in (kernels, plain()):
         _, _, sections, _ = made(by, *as_features(points, target))
         assert_allclose(sections[0, ..., :2], finished, rtol=0, atol=1e-9)

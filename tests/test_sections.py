@@ -1,25 +1,53 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.optimize import brentq
 
 import bladegen as bg
+from bladegen.airfoils import fronts, noses
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.edges import MinimumThickness, Sharp
 from bladegen.errors import GeometryError
-from strategies import airfoils, box, circle, ellipse, four_digit
+from strategies import airfoils, box, circle, ellipse, few, four_digit, naca
 
 U = landmark_parameters(401)
 SPLINES = SectionSplines(U)
 
 
+def led(u, fine, edge):
+    """The leading edge: the farthest point, or the mean of those nearly as far."""
+    away = fine - edge
+    squares = np.sum(away**2, axis=1) * ((u > 0.25) & (u < 0.75))
+    top, part = squares.max(), np.gradient(u)
+    first = np.argmax(squares)
+    apart = np.abs(u - u[first])
+    gap, fall = 1.0 - squares / top + fronts.DIGITS, fronts.ROUND * apart**2 + fronts.DIGITS
+    y = np.maximum(1.0 - gap / fall, 0.0)
+    f = min(np.sum((part * y**2 / (apart + fronts.NEAR))[squares > 0.0]) / fronts.LED, 1.0)
+
+    def excess(level):
+        return np.sum(part * np.maximum(squares / level - 1.0, 0.0) ** 2) - fronts.MASS
+
+    x = np.maximum(squares / brentq(excess, 0.9 * top, top, xtol=1e-15) - 1.0, 0.0)
+    level = np.max(squares[x > 0.0] / (1.0 + x[x > 0.0]))
+    weights = part * x**2 / np.sum(part * x**2)
+    mean = weights @ away
+    mean *= np.sqrt(level * (1.0 + fronts.PARABOLA * weights @ x)) / np.linalg.norm(mean)
+    return edge + away[first] + f * f * (3.0 - 2.0 * f) * (mean - away[first])
+
+
 def measured(points):
     """Chord and thickness by brute force on a fine polyline, as an independent reference."""
-    fine = SPLINES.values(np.linspace(0, 1, 40001)) @ points
+    u = np.linspace(0, 1, 40001)
+    fine = SPLINES.values(u) @ points
     edge = 0.5 * (points[0] + points[-1])
-    nose = fine[np.argmax(np.linalg.norm(fine - edge, axis=1))]
+    near = u[np.argmax(np.linalg.norm(fine - edge, axis=1))] + 2.5e-5 * np.linspace(-1, 1, 2001)
+    u = np.sort(np.concatenate([u, near]))
+    fine = SPLINES.values(u) @ points
+    nose = led(u, fine, edge)
     chord = np.linalg.norm(edge - nose)
     along = (edge - nose) / chord
     x, y = (fine - nose) @ along, (fine - nose) @ [-along[1], along[0]]
@@ -34,8 +62,51 @@ def test_agrees_with_brute_force(xy):
     points = landmarks(xy, 401)
     curves = SPLINES.fit(points[None])
     chord, thickness = measured(points)
-    assert_allclose(curves.chord[0], chord, atol=1e-8)
-    assert_allclose(curves.relative_thickness[0], thickness, atol=1e-6)
+    sums = 2e-6 * (curves.shares[0] > 0.0)  # sums over landmarks are no integrals
+    assert_allclose(curves.chord[0], chord, atol=1e-8 + sums)
+    assert_allclose(curves.relative_thickness[0], thickness, atol=1e-6 + sums)
+
+
+@given(st.floats(0.06, 0.3), st.floats(0.0, 0.05), st.floats(0.0, 0.02))
+def test_a_nose_that_clearly_wins_is_the_farthest_point_to_the_bit(thickness, camber, gap):
+    points = landmarks(naca(thickness, camber, gap), 401)
+    curves = SPLINES.fit(points[None])
+    assert curves.shares[0] == 0.0
+    edge, away = curves.trailing_edge, points - curves.trailing_edge
+    best = np.argmax(np.sum(away**2, axis=1), keepdims=True)
+    first, _ = noses._peak(curves.splines, curves.planes, edge.T, np.array([0]), best)
+    assert_array_equal(curves.leading_edge, first)
+    u = np.linspace(0.4, 0.6, 2001)[None]
+    away = np.linalg.norm(curves.at(u)[0][0] - edge, axis=-1)
+    assert np.all(away <= curves.chord[0] * (1.0 + 1e-15))
+
+
+def fronted(heights, sharp):
+    """(k, 401, 2) sections whose fronts are a circle about the edge, with bumps (k, 3) on it."""
+    turn = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 401)[::-1]
+    far = np.cos(turn) ** 0.1 * (1.0 - 0.3 * np.maximum(np.abs(turn) - 0.3, 0.0) ** 2)
+    places = np.array([-0.2, 0.02, 0.21])
+    bumps = np.exp(-(((turn[:, None] - places) / sharp) ** 2))
+    far = far * (1.0 + heights @ bumps.T)
+    far[..., [0, -1]] = 0.0
+    return np.stack([1.0 - np.cos(turn) * far, np.sin(turn) * far], axis=-1)
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.03, 0.06, 0.1]))
+@settings(max_examples=few(30), deadline=None)
+def test_the_chord_line_is_continuous_where_noses_tie(seed, sharp):
+    """Whatever noses pass each other, two or three: twice as many steps are half as large."""
+    rng, splines = np.random.default_rng(seed), SectionSplines(np.linspace(0.0, 1.0, 401))
+    start, end = rng.uniform(0.0, 2e-3, (2, 3))
+    through = 0.5 * (start + end)  # where all three tie, nearly
+    start, end = (one - through + 1e-3 for one in (start, end))
+    steps = []
+    for count in (1025, 2049):
+        s = np.linspace(0.0, 1.0, count)[:, None]
+        curves = splines.fit(fronted(start + s * (end - start), sharp))
+        steps.append(np.abs(np.diff(curves.leading_edge, axis=0)).max())
+    assert curves.shares.max() == 1.0
+    assert steps[1] < 0.6 * steps[0]
 
 
 @pytest.mark.parametrize("thickness", [0.12, 0.18, 0.3])

@@ -1,16 +1,17 @@
 """Chord lines of sections, and the motions in the plane that bring one onto another.
 
-A chord line runs from the leading edge, as `sections` finds it where one nose is farthest from
-the trailing edge or two share in it, to the middle of the trailing edge.  A deformation of shape
-turns it and moves its nose; a rotation and a shift bring both back, and no point of the
-Grassmannian moves.  Lengths in chords, rows are points: ``points @ R + s``.
+A chord line runs from the leading edge, as `noses` finds it, to the middle of the trailing edge.  A
+deformation of shape turns it and moves its nose; a rotation and a shift bring both back, and no
+point of the Grassmannian moves.  Lengths in chords, rows are points: ``points @ R + s``.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.airfoils.noses import several_peaks
+from bladegen.airfoils.fronts import Front
+from bladegen.airfoils.noses import other_noses
+from bladegen.airfoils.resizing import LITTLE
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.errors import PerturbationError
 from bladegen.support.arrays import Array, Mask
@@ -20,8 +21,6 @@ __all__ = ["CONVENTIONS", "KEPT", "PAPER", "ChordLines", "Motions", "angles", "k
 
 KEPT, PAPER = "kept", "paper"
 CONVENTIONS = (KEPT, PAPER)  # what a deformation does with the chord line
-THICK = 0.3  # of the chord; even a little stretch may give such a section a second nose
-LITTLE = 0.02  # of a thickness; no stretch by less does so to others
 
 
 def known_convention(chord_line: str) -> str:
@@ -63,8 +62,8 @@ class Motions:
 class ChordLines:
     """Leading edges and trailing-edge midpoints, (k, 2) each.
 
-    `alone` (k,) tells where no second nose is nearly as far from the trailing edge as the first:
-    there the line is the same whatever relative thickness the section is brought to.
+    `alone` (k,) tells where one point is clearly the farthest from the trailing edge: there the
+    line is the same whatever relative thickness the section is brought to.
     """
 
     nose: Array
@@ -76,7 +75,7 @@ class ChordLines:
     @classmethod
     def of(cls, curves: SectionCurves) -> "ChordLines":
         """Return those of sections."""
-        return cls(curves.leading_edge, curves.trailing_edge, ~curves.has_second_nose)
+        return cls(curves.leading_edge, curves.trailing_edge, ~curves.may_be_round)
 
     @classmethod
     def sized(
@@ -90,14 +89,15 @@ class ChordLines:
         nose, edge = (
             (p[:, None] @ A)[:, 0] + c for p in (curves.leading_edge, curves.trailing_edge)
         )
-        alone = ~curves.has_second_nose
-        again = ~alone
+        again = curves.may_be_round
         if thickness is not None:
             stretched = np.abs(thickness - curves.relative_thickness) > LITTLE * thickness
-            looked = np.flatnonzero(~again & (stretched | (thickness > THICK)))
-            edges = curves.trailing_edge[looked].T
-            again[looked] = several_peaks(curves.planes[:, looked], edges, A[looked])
-        rows = np.flatnonzero(again)
+            looked = np.flatnonzero(~again & stretched)
+            edges, low = curves.trailing_edge[looked].T, curves.nose_landmarks[looked]
+            again[looked] = other_noses(
+                curves.splines, curves.planes[:, looked], edges, A[looked], low
+            )
+        alone, rows = ~again, np.flatnonzero(again)
         if rows.size:
             some = cls.of(curves.take(rows).mapped(A[rows], c[rows]))
             nose[rows], edge[rows], alone[rows] = some.nose, some.edge, some.alone
@@ -119,16 +119,16 @@ class ChordLines:
         return Motions(R, other.nose - (self.nose[:, None] @ R)[:, 0])
 
 
-def angles(points: Array) -> Array:
-    """Return the angles (...) of chord lines of sections (..., n, 2), from landmarks alone [rad].
+def angles(points: Array, u: Array) -> Array:
+    """Return the angles (k,) of chord lines of sections (k, n, 2), from landmarks alone [rad].
 
-    The leading edge is the top of the parabola of distances through the farthest landmark and
-    its neighbours: quick, and right to 1e-6 chord on 401 landmarks.
+    The farthest point is the top of the parabola of distances through the farthest landmark and
+    its neighbours: quick, and right to 1e-6 chord on 401 landmarks.  `u` (n,) are their parameters.
     """
-    edge = 0.5 * (points[..., 0, :] + points[..., -1, :])
-    away = points - edge[..., None, :]
+    edge = 0.5 * (points[:, 0] + points[:, -1])
+    away = points - edge[:, None]
     squares = away[..., 0] ** 2 + away[..., 1] ** 2
-    at = np.clip(np.argmax(squares, axis=-1), 1, points.shape[-2] - 2)[..., None]
+    at = np.clip(np.argmax(squares, axis=-1), 1, points.shape[-2] - 2)[:, None]
     a, b, c = (np.take_along_axis(squares, at + i, axis=-1) for i in (-1, 0, 1))
     bend = a - 2.0 * b + c
     h = np.divide(0.5 * (a - c), bend, out=np.zeros_like(bend), where=bend < 0.0)
@@ -136,5 +136,12 @@ def angles(points: Array) -> Array:
         np.take_along_axis(away, (at + i)[..., None], axis=-2)[..., 0, :] for i in (-1, 0, 1)
     )
     nose = here + 0.5 * h * (after - before) + 0.5 * h * h * (after - 2.0 * here + before)
+    front = Front(u)
+    planes, squares = np.moveaxis(points, -1, 0), squares[:, front.ahead]
+    places = 0.5 * (np.take(u, at[:, 0] + 1) - np.take(u, at[:, 0] - 1)) * h[:, 0]
+    places += np.take(u, at[:, 0])
+    top = nose[:, 0] ** 2 + nose[:, 1] ** 2
+    shares, means, _, _ = front.led(planes, edge.T, squares, top, places)
+    nose += shares[:, None] * (means - nose)
     result: Array = np.arctan2(-nose[..., 1], -nose[..., 0])
     return result

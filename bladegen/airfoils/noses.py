@@ -1,46 +1,53 @@
-"""From landmarks to the noses of sections: the points farthest from the trailing edge.
+"""From landmarks to the leading edges of sections: the points farthest from the trailing edge.
 
 Between two landmarks a section is a cubic, and its squared distance from the edge has one peak
-there: Newton's method climbs to it from where its slopes at either end say it is.
+there: Newton's method climbs to it from where its slopes at either end say it is.  Where a section
+is nearly round about its edge, the mean of points nearly as far leads instead (`fronts`).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from bladegen.airfoils.resizing import RIVAL
+from bladegen.airfoils.fronts import ROUND
 from bladegen.airfoils.slopes import SplineSlopes
 from bladegen.curves.cubics import Cubics, pieces
 from bladegen.curves.roots import falling
 from bladegen.support.arrays import Array, Indices, Mask
 
-__all__ = ["Noses", "farthest", "several_peaks"]
+__all__ = ["Noses", "farthest", "other_noses"]
 
 ITERATIONS = 8  # three are usual
 SETTLED = 1e-7  # of the way between landmarks; the step after is a thousand squares of it
-SAME_NOSE = 3  # landmarks; nearer peaks are one nose
+SAME_NOSE = 2  # landmarks; a nose keeps its landmark, or one beside it, under a stretch
+FARTHER = 1.25  # times `ROUND`; a front that falls off by more under a stretch is not round
 
 
 class Noses(NamedTuple):
-    """The noses of sections.
+    """The leading edges of sections.
 
     Parameters
     ----------
-    first, second : (k, 2) arrays
-        The farthest points, and the farthest of other peaks of the distance nearly as far; the
-        same where there is none.
+    points : (k, 2) array
+        The points.
+    shares : (k,) array
+        Of the mean of many in them: 0 where the farthest leads.
+    wide : (k,) array of bool
+        Where a little change of the section may make a share.
     low, high : (k,) arrays of int
-        The landmarks nearest to the two.
+        The landmarks between which distances matter.
     """
 
-    first: Array
-    second: Array
+    points: Array
+    shares: Array
+    wide: Mask
     low: Indices
     high: Indices
 
     def take(self, rows: Indices) -> "Noses":
         """Return those of some of the sections."""
-        return Noses(self.first[rows], self.second[rows], self.low[rows], self.high[rows])
+        points, shares, wide, low, high = self
+        return Noses(points[rows], shares[rows], wide[rows], low[rows], high[rows])
 
 
 def farthest(slopes: SplineSlopes, planes: Array, edge: Array) -> Noses:
@@ -53,54 +60,45 @@ def farthest(slopes: SplineSlopes, planes: Array, edge: Array) -> Noses:
     edge : (2, k) array
         The trailing-edge midpoints.
     """
-    ahead = planes.shape[2] // 4
-    distances, y = planes[..., ahead:-ahead] - edge[..., None]
-    distances *= distances
-    y *= y
-    distances += y
-    best, rows = np.argmax(distances, axis=1), np.arange(len(distances))
-    first = _peak(slopes, planes, edge, rows, best + ahead)
-    peaks, several = _peaks(distances, best)
-    more = np.flatnonzero(several)
-    if not more.size:
-        return Noses(first, first, best + ahead, best + ahead)
-    inner, peaks = distances[more, 1:-1], peaks[more]
-    peaks &= np.abs(np.arange(1, distances.shape[1] - 1) - best[more, None]) > SAME_NOSE
-    peaks &= inner > distances[more].max(axis=1, keepdims=True) * (1.0 - RIVAL)
-    rivals = np.flatnonzero(peaks.any(axis=1))
-    second, other = first.copy(), best + ahead
-    if rivals.size:
-        rows = more[rivals]
-        other[rows] = 1 + ahead + np.argmax(np.where(peaks, inner, -1.0)[rivals], axis=1)
-        second[rows] = _peak(slopes, planes, edge, rows, other[rows])
-    return Noses(first, second, np.minimum(best + ahead, other), np.maximum(best + ahead, other))
+    front = slopes.front
+    squares = front.squares(planes, edge)
+    best, rows = np.argmax(squares, axis=1), np.arange(len(squares))
+    points, places = _peak(slopes, planes, edge, rows, best + front.ahead.start)
+    top = ((points.T - edge) ** 2).sum(axis=0)
+    led = front.led(planes, edge, squares, top, places)
+    at = np.flatnonzero(led.shares)
+    points[at] += led.shares[at, None] * (edge[:, at].T + led.means[at] - points[at])
+    return Noses(points, led.shares, led.wide, *led.reach)
 
 
-def several_peaks(planes: Array, edge: Array, A: Array) -> Mask:
-    """Tell which sections (2, k, n) have more than one peak of the distance under maps (k, 2, 2).
+def other_noses(
+    slopes: SplineSlopes, planes: Array, edge: Array, A: Array, landmarks: Indices
+) -> Mask:
+    """Tell which sections (2, k, n) may have round or other noses under maps (k, 2, 2).
 
-    `edge` (2, k) are the trailing-edge midpoints.
+    `edge` (2, k) are the trailing-edge midpoints, `landmarks` (k,) those nearest to the noses.
     """
-    ahead = planes.shape[2] // 4
-    away = A.mT @ (planes[..., ahead:-ahead] - edge[..., None]).swapaxes(0, 1)
-    away *= away
-    distances = away[:, 0] + away[:, 1]
-    return _peaks(distances, np.argmax(distances, axis=1))[1]
-
-
-def _peaks(distances: Array, best: Indices) -> tuple[Mask, Mask]:
-    """Return where inner landmarks (k, m - 2) are peaks, and which sections have several, (k,)."""
-    rises = distances[:, 1:] > distances[:, :-1]
-    peaks = rises[:, :-1] & ~rises[:, 1:]
-    ends = (best == 0) | (best == distances.shape[1] - 1)
-    return peaks, ends | (np.count_nonzero(peaks, axis=1) != 1)
+    squares = slopes.front.squares(planes, edge, A)
+    best, start = np.argmax(squares, axis=1), slopes.front.ahead.start
+    others = np.abs(best + start - landmarks) > SAME_NOSE
+    rows, i = np.arange(len(best)), np.clip(best, 1, squares.shape[1] - 2)
+    a, b, c = (squares[rows, i + k] for k in (-1, 0, 1))
+    rise, bend = a - c, a - 2.0 * b + c  # the top of a parabola through three landmarks
+    h = np.divide(0.5 * rise, bend, out=np.zeros_like(bend), where=bend < 0.0)
+    u, i = slopes.u, i + start
+    places = u[i] + 0.5 * h * (u[i + 1] - u[i - 1])
+    others |= slopes.front.rivalled(squares, b - 0.25 * rise * h, places, FARTHER * ROUND)
+    return np.asarray(others)
 
 
 def _peak(
     slopes: SplineSlopes, planes: Array, edge: Array, rows: Indices, landmarks: Indices
-) -> Array:
-    """Climb from landmarks (m,) of sections `rows` to the points farthest from the edge, (m, 2)."""
-    points, settled = _climbed(slopes, planes, edge[:, rows], rows, landmarks)
+) -> tuple[Array, Array]:
+    """Climb from landmarks (m,) of sections `rows` to the points farthest from the edge.
+
+    Returned are points (m, 2), and their places u.
+    """
+    points, places, settled = _climbed(slopes, planes, edge[:, rows], rows, landmarks)
     open_ = np.flatnonzero(~settled)
     if open_.size:
         rows, landmarks = rows[open_], landmarks[open_]
@@ -112,14 +110,14 @@ def _peak(
             r = p - edge[:, rows].T
             return np.sum(r * d1, axis=-1), np.sum(d1 * d1 + r * d2, axis=-1)
 
-        places = falling(receding, u[landmarks - 1], u[landmarks], u[landmarks + 1])
-        points[:, open_] = section.at(places)[0].T
-    return points.T
+        found = falling(receding, u[landmarks - 1], u[landmarks], u[landmarks + 1])
+        points[:, open_], places[open_] = section.at(found)[0].T, found
+    return points.T, places
 
 
 def _climbed(
     slopes: SplineSlopes, planes: Array, edge: Array, rows: Indices, landmarks: Indices
-) -> tuple[Array, Mask]:
+) -> tuple[Array, Array, Mask]:
     """Climb from landmarks to the points beside them that are farthest from the edge.
 
     Parameters
@@ -133,8 +131,8 @@ def _climbed(
 
     Returns
     -------
-    points, settled : (2, m), (m,) arrays
-        The points, and where they are peaks indeed.
+    points, places, settled : (2, m), (m,), (m,) arrays
+        The points, their places u, and where they are peaks indeed.
     """
     near = landmarks[:, None] + np.arange(-1, 2)
     away = planes[:, rows[:, None], near] - edge[..., None]
@@ -148,13 +146,16 @@ def _climbed(
     a, b, c, d = pieces(start, end, slope, last)
     with np.errstate(all="ignore"):
         s = rise / (rise - fall)
+        ended = np.zeros(len(s), dtype=bool)
         for _ in range(ITERATIONS):
             here, rate = ((d * s + c) * s + b) * s + a, (3.0 * d * s + 2.0 * c) * s + b
             bending = (rate * rate + here * (6.0 * d * s + 2.0 * c)).sum(axis=0)
-            step = (here * rate).sum(axis=0) / bending
+            step = np.where(ended, 0.0, (here * rate).sum(axis=0) / bending)
             s = s - step
-            if not np.abs(step).max(initial=0.0) > SETTLED:
+            ended |= np.abs(step) <= SETTLED  # each section by itself
+            if ended.all():
                 break
         settled = (np.abs(step) <= SETTLED) & (bending < 0.0) & (s >= 0.0) & (s <= 1.0)
         settled &= (rise >= 0.0) & (fall <= 0.0)
-        return ((d * s + c) * s + b) * s + a + edge, settled
+        points = ((d * s + c) * s + b) * s + a + edge
+        return points, slopes.u[cell] + s * width, settled

@@ -3,9 +3,9 @@
 Sections are landmarks of shape (k, n, 2) at common parameters u (n,), trailing edge ->
 suction side -> leading edge -> pressure side.  Their splines are C2 cubics in u.
 
-The leading edge is the point farthest from the trailing-edge midpoint, the chord is that
-distance, and the relative thickness is the largest distance between the two sides measured
-normal to the chord line, over the chord.
+The leading edge is the point farthest from the trailing-edge midpoint, or the mean of many that are
+nearly as far (`noses`); the chord is its distance, and the relative thickness is the
+largest distance between the two sides measured normal to the chord line, over the chord.
 """
 
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.airfoils.noses import Noses, farthest
-from bladegen.airfoils.resizing import resizing, stretching
+from bladegen.airfoils.noses import Noses, farthest, other_noses
+from bladegen.airfoils.resizing import LITTLE, stretching
 from bladegen.airfoils.slopes import SplineSlopes
 from bladegen.airfoils.thickest import Places, thickest, thickest_again
 from bladegen.curves.cubics import Cubics
@@ -26,10 +26,11 @@ from bladegen.support.values import brief
 __all__ = ["SectionCurves"]
 
 SETTLED = 1e-13  # change of a stretch that ends its iteration
-EVEN = 1e-11  # of `AMBIGUOUS`; differences of distances that are rounding
+EVEN = 1e-13  # of a chord line's slope; differences that are rounding
+DOUBLED = 40  # times, at most, that a chord line's turn is until a leading edge lies behind it
+STEEPEST = 1.0  # turn of a chord line, as a slope; leading edges lie in front
 NEAR = 20  # landmarks that moved, of which it is looked how much they did
 ROUNDING = 1e-15  # of a chord
-AMBIGUOUS = 2e-5  # of a chord; noses whose distances differ by less share the leading edge
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,17 +64,20 @@ class SectionCurves:
             raise GeometryError(
                 "sections: one has no thickness; do sides of neighbouring airfoils change places?"
             )
-        A, c, passed = resizing(
-            np.array(self._noses),
-            self.leading_edge,
-            self.trailing_edge,
-            thickness,
-            relative_thickness,
-        )
-        rows = np.flatnonzero(self.has_rivals | passed)
-        if relative_thickness is not None and rows.size:
-            B, d, moved = self.take(rows).shared(relative_thickness[rows])
-            A[rows[moved]], c[rows[moved]] = B[moved], d[moved]
+        lead, along = self.leading_edge, self._along
+        normal, reach = along[:, ::-1] * (-1.0, 1.0), self.chord
+        if thickness is None or relative_thickness is None:
+            return stretching(lead, normal, np.ones_like(reach), reach)
+        stretch = relative_thickness * reach / thickness
+        A, c = stretching(self.trailing_edge, normal, stretch, reach)
+        round_ = self._measured.wide.copy()
+        rows = np.flatnonzero(~round_ & (np.abs(stretch - 1.0) > LITTLE))
+        if rows.size:
+            edges, low = self.trailing_edge[rows].T, self._measured.low[rows]
+            round_[rows] = other_noses(self.splines, self.planes[:, rows], edges, A[rows], low)
+        rows = np.flatnonzero(round_)
+        if rows.size:
+            A[rows], c[rows] = self.take(rows)._round(relative_thickness[rows])
         return A, c
 
     def mapped(self, A: Array, c: Array) -> "SectionCurves":
@@ -154,125 +158,101 @@ class SectionCurves:
         return farthest(self.splines, self.planes, self.trailing_edge.T)
 
     @property
-    def _noses(self) -> tuple[Array, Array]:
-        """The farthest points, and the farthest of other peaks of the distance, (k, 2) each."""
-        return self._measured[:2]
+    def nose_landmarks(self) -> Indices:
+        """The landmarks nearest to the noses, (k,)."""
+        return self._measured.low
 
     @property
-    def has_second_nose(self) -> Mask:
-        """Which sections have another peak nearly as far from the trailing edge, (k,)."""
-        second: Mask = self._measured.low != self._measured.high
-        return second
+    def may_be_round(self) -> Mask:
+        """Which sections' leading edge is a mean of many points, or nearly, (k,)."""
+        return self._measured.wide.copy()
 
     @property
-    def has_rivals(self) -> Mask:
-        """Which sections have another nose that shares in the leading edge, (k,)."""
-        one, two = self._noses
-        if one is two:
-            return np.zeros(len(one), dtype=bool)
-        near = np.abs(self._reach(one) - self._reach(two)) < 2.0 * AMBIGUOUS
-        rivals: Mask = near & self.has_second_nose
-        return rivals
+    def shares(self) -> Array:
+        """The share of the mean of many points in the leading edges, (k,); mostly 0."""
+        return self._measured.shares
 
-    @cached_property
+    @property
     def leading_edge(self) -> Array:
-        """The leading edges, (k, 2): the points farthest from the trailing-edge midpoints.
-
-        On thick sections two points can be farthest by turns as the span goes on; where they
-        agree to `AMBIGUOUS`, the leading edge moves smoothly from the one to the other.
-        """
-        one, two = self._noses
-        if one is two:
-            return one
-        ahead = self._reach(one) - self._reach(two)
-        f = np.clip(ahead / AMBIGUOUS, -1.0, 1.0)
-        share = (0.5 - 0.25 * f * (3.0 - f * f))[:, None]
-        return one + share * (two - one)
-
-    def _reach(self, points: Array) -> Array:
-        """Distances of points (k, 2) from the trailing-edge midpoints, (k,)."""
-        away = points - self.trailing_edge
-        return np.hypot(away[..., 0], away[..., 1])
+        """The leading edges, (k, 2)."""
+        return self._measured.points
 
     @cached_property
     def chord(self) -> Array:
-        """The chords, (k,): the largest distances from the trailing-edge midpoints."""
-        one, two = self._noses
-        return self._reach(one) if one is two else np.maximum(self._reach(one), self._reach(two))
+        """The chords, (k,): distances of the leading edges from the trailing-edge midpoints."""
+        away = self.leading_edge - self.trailing_edge
+        return np.hypot(away[..., 0], away[..., 1])
 
     @property
     def relative_thickness(self) -> Array:
         """Largest distance between the sides normal to the chord line, over the chord, (k,)."""
         return self.thickness / self.chord
 
-    def shared(self, relative_thickness: Array) -> tuple[Array, Array, Mask]:
-        """Return the maps of `resizing` where two noses may share the leading edge.
+    def _round(self, relative_thickness: Array) -> tuple[Array, Array]:
+        """Return the maps of `normalising` where leading edges may be means of many points.
 
-        Returned besides is where they differ from those of the present leading edge.
-
-        The stretch moves noses away from the chord line, or towards it, so that their distances
-        depend on where the line runs between them, and it runs where their distances say: its
-        place is found by the signs of the difference.  Where either nose may lead, the one does
-        that is farther now.
+        The stretch moves them, so that a chord line through the edge is sought on which the
+        leading edge lies after the stretch normal to it: near the present one, from which its
+        turn grows until the leading edge lies behind it.
         """
-        noses = np.stack(self._noses)
+        edge, own = self.trailing_edge, self._along
+        across = own[:, ::-1] * (-1.0, 1.0)
+        stretches = relative_thickness * self.chord / self.thickness
+        count = len(own)
+        reaches = np.empty(count)
 
-        def lead(place: Array, rows: Indices) -> Array:
-            one, two = noses[0, rows], noses[1, rows]
-            point: Array = one + place[:, None] * (two - one)
-            return point
+        def excess(turn: Array, rows: Indices) -> Array:
+            """By how much leading edges lie beyond chord lines of slopes `turn` to the own."""
+            along = own[rows] + turn[:, None] * across[rows]
+            along /= np.hypot(along[:, :1], along[:, 1:])
+            some = self.take(rows)._stretched(along, relative_thickness[rows], stretches[rows])
+            stretches[rows], reaches[rows], beyond = some
+            return beyond
 
-        def excess(place: Array, rows: Indices) -> Array:
-            some = self.take(rows), noses[:, rows], relative_thickness[rows]
-            return SectionCurves._stretched(*some, lead(place, rows))[-1]
-
-        place, either = bracketed(excess, len(self.points), EVEN)
-        place = np.where(
-            either, np.where(self._reach(noses[0]) < self._reach(noses[1]), 1.0, 0.0), place
+        turn, end = np.zeros(count), np.zeros(count)
+        above = excess(turn, np.arange(count))
+        side, below = np.where(above < 0.0, -1.0, 1.0), np.zeros(count)
+        rows = np.flatnonzero(np.abs(above) > EVEN)
+        end[rows] = above[rows]
+        for _ in range(DOUBLED):
+            if not rows.size:
+                break
+            end[rows] = np.clip(2.0 * end[rows], -STEEPEST, STEEPEST)
+            below[rows] = side[rows] * excess(end[rows], rows)
+            rows = rows[(below[rows] > 0.0) & (np.abs(end[rows]) < STEEPEST)]
+        place = bracketed(
+            lambda at, some: side[some] * excess(at * end[some], some), side * above, below, EVEN
         )
-        start = lead(place, np.arange(len(place)))
-        normal, stretch, reach, _ = self._stretched(noses, relative_thickness, start)
-        moved = self.has_rivals | (place > 0.0)
-        return *stretching(start, normal, stretch, reach), moved
+        turn = place * end
+        along = own + turn[:, None] * across
+        along /= np.hypot(along[:, :1], along[:, 1:])
+        return stretching(edge, along[:, ::-1] * (-1.0, 1.0), stretches, reaches)
 
     def _stretched(
-        self, noses: Array, relative_thickness: Array, lead: Array
-    ) -> tuple[Array, Array, Array, Array]:
-        """Stretch sections normal to the line from points `lead` (k, 2) to their edges.
+        self, along: Array, relative_thickness: Array, stretch: Array
+    ) -> tuple[Array, Array, Array]:
+        """Stretch sections normal to lines (k, 2) to their edges, to a relative thickness.
 
-        Returns the normals, the stretch to the relative thickness, the noses' distances then (2,
-        k), and by how much of `AMBIGUOUS` the second nose (of `noses`, (2, k, 2)) is farther
-        than it would be if the leading edge lay on the line; where only one is left, how far it
-        lies from the line, positive on the second's side.
+        Returns the stretches, of which `stretch` is a guess, the distances of the leading edges
+        then, and by how much their own lines' slope differs from that of these.
         """
         edge = self.trailing_edge
-        along = (edge - lead) / self._reach(lead)[:, None]
-        normal = np.stack([-along[:, 1], along[:, 0]], axis=-1)
-        axes = np.stack([along, normal], axis=-1)
+        axes = np.stack([along, along[:, ::-1] * (-1.0, 1.0)], axis=-1)
         turned = self.mapped(axes, -(edge[:, None] @ axes)[:, 0])
         thickness = thickest(self.splines, self.planes, along).height
-        far = ((noses - edge)[..., None, :] @ axes)[..., 0, :]
-        side = np.sign(far[1, :, 1] - far[0, :, 1])
-        factors = np.ones((len(lead), 2))
-        for _ in range(ITERATIONS):  # other points become the farthest, to second order
-            stretch = factors[:, 1].copy()
-            x, y = far[..., 0], far[..., 1]
-            free = thickness**2 - (relative_thickness * y) ** 2
-            free = np.maximum(free, SETTLED * thickness**2)  # or no stretch would do
-            factors[:, 1] = relative_thickness * np.max(np.abs(x) / np.sqrt(free), axis=0)
-            points = turned.points * factors[:, None]
-            far = np.stack(SectionCurves(self.splines, points)._noses) / factors
-            if np.all(np.abs(factors[:, 1] - stretch) <= SETTLED):
+        stretch, points = stretch.copy(), np.empty((len(stretch), 2))
+        factors, rows = np.ones((len(stretch), 2)), np.arange(len(stretch))
+        for _ in range(ITERATIONS):  # the leading edge moves with the stretch, to second order
+            factors[rows, 1] = stretch[rows]
+            some = turned.points[rows] * factors[rows, None]
+            points[rows] = SectionCurves(self.splines, some).leading_edge
+            reach = np.hypot(points[rows, 0], points[rows, 1])
+            stretch[rows] = relative_thickness[rows] * reach / thickness[rows]
+            rows = rows[np.abs(stretch[rows] - factors[rows, 1]) > SETTLED * stretch[rows]]
+            if not rows.size:
                 break
-        far *= factors
-        reach = np.linalg.norm(far, axis=-1)
-        y = side * far[..., 1]
-        ahead = np.where(y[0] > y[1], -1.0, 1.0) * (reach[0] - reach[1]) / reach.max(axis=0)
-        near, across = y.min(axis=0), np.ptp(y, axis=0)
-        share = np.clip(-near / np.where(across > 0.0, across, 1.0), 0.0, 1.0)
-        held = 2.0 * np.sin(np.arcsin(1.0 - 2.0 * share) / 3.0)  # the cubic of `leading_edge`
-        excess = np.where(across > 0.0, held - ahead / AMBIGUOUS, near)
-        return normal, factors[:, 1], reach, excess
+        reach = np.hypot(points[:, 0], points[:, 1])
+        return stretch, reach, points[:, 1] / (factors[:, 1] * points[:, 0])
 
     @property
     def edge_width(self) -> Array:
@@ -289,8 +269,7 @@ class SectionCurves:
     @cached_property
     def _along(self) -> Array:
         """Unit vectors along the chord lines, (k, 2)."""
-        lead = self.leading_edge
-        return np.asarray((self.trailing_edge - lead) / self._reach(lead)[:, None])
+        return np.asarray((self.trailing_edge - self.leading_edge) / self.chord[:, None])
 
     @cached_property
     def _places(self) -> Places:

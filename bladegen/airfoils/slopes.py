@@ -9,6 +9,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+from bladegen.airfoils.fronts import Front
 from bladegen.support.arrays import Array, Indices, readonly
 from bladegen.support.values import brief
 
@@ -30,6 +31,11 @@ class SplineSlopes:
     def at(cls, u: Array) -> "SplineSlopes":
         """Return those of landmark parameters, shared by all blades with the same ones."""
         return _shared(np.asarray(u, dtype=np.float64).tobytes())
+
+    @cached_property
+    def front(self) -> Front:
+        """The landmarks among which noses are sought."""
+        return Front(self.u)
 
     @cached_property
     def matrix(self) -> Array:

@@ -6,6 +6,8 @@ y; sections are linear in features (`batch`), of which the last is constant.
 
 from math import sqrt
 
+import numpy as np
+
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
 
@@ -17,6 +19,7 @@ __all__ = [
     "combine",
     "distance",
     "followed",
+    "inverted",
     "motion_of",
     "onto",
     "turned",
@@ -111,3 +114,18 @@ def motion_of(numbers: Array) -> Numbers:
     """Return the map of a motion (4,): cosine, sine and shift."""
     c, s = numbers[0], numbers[1]
     return c, s, -s, c, numbers[2], numbers[3]
+
+
+@compiled
+def inverted(m: Array) -> Array:
+    """Return the inverse of a 3 x 3 matrix."""
+    result = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            p, q, r, s = (j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3
+            result[i, j] = m[p, r] * m[q, s] - m[p, s] * m[q, r]
+    determinant = m[0, 0] * result[0, 0] + m[0, 1] * result[1, 0] + m[0, 2] * result[2, 0]
+    for i in range(3):
+        for j in range(3):
+            result[i, j] /= determinant
+    return result

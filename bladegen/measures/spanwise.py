@@ -68,16 +68,17 @@ def spanwise(blade: Blade, eta: Array) -> dict[str, Array]:
 def built(blade: Blade, eta: Array) -> tuple[Array, Array]:
     """Return chord [m] and twist [rad], (k,) each, of the sections that are written.
 
-    Both are measured on the finished points in space: the line from the point farthest from the
-    middle of the trailing edge to that middle, in the section's plane, less the angle that the
-    airfoil's own chord line has in the definition, before any change of shape.  Those of a mirror
+    Both are measured on the finished points in space: the line from the leading edge to the
+    middle of the trailing edge, in the section's plane, less the angle that the airfoil's own
+    chord line has at that thickness, before any change of shape.  Those of a mirror
     image are the blade's own: its nose turns toward the wind as before.
     """
     blade = blade.mirror_image() if blade.mirrored else blade
     placed = blade.sections(eta) - blade.axis(eta)[:, None]
     flat = (placed @ blade.planform.frames(eta)[:, :2].mT)[..., ::-1]
     plain, _, M, b = blade.shapes(eta)
-    curves = [blade.splines.fit(points) for points in (flat, affine.restore(plain, M, b))]
+    raw = blade.splines.fit(affine.restore(plain, M, b))
+    curves = [blade.splines.fit(flat), raw.mapped(*raw.normalising(blade.wanted_thickness(eta)))]
     lines = [curve.trailing_edge - curve.leading_edge for curve in curves]
     own, given = (np.arctan2(line[:, 1], line[:, 0]) for line in lines)
     return curves[0].chord, own - given

@@ -4,14 +4,10 @@ Sections are those of `Blade.perturbed` at the same parameters.  Derivatives are
 (`section_slopes`): through the exponential map, unit chord, the rule for the relative thickness,
 the chord line that is kept, the edge's finish and the section planes.
 
-They exist but at few places, where one side's derivative is given:
-
-- where two noses of a thick section compete for the leading edge and one of them begins or ends to
-  share in it, or passes the other as the farthest from the trailing edge
-  (`airfoils.section_curves`);
-- where a trailing edge reaches its least width, or 2 mm reach 1 % of the chord (`blade.edges`).
-
-Where either of two noses, or three, may lead, sections themselves jump, and so do derivatives.
+They exist but where a trailing edge reaches its least width, or 2 mm reach 1 % of the chord
+(`blade.edges`): there one side's derivative is given.  A section with two noses far apart that is
+made much thinner may have a chord line through either; where it changes to the other, sections
+themselves jump (`airfoils.section_curves`).
 """
 
 from collections.abc import Mapping, Sequence

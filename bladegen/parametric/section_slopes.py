@@ -1,8 +1,9 @@
 """Compiled: derivatives of what a section measures, and of the map that brings it to size.
 
-A section is linear in coefficients c (F, 2), so each measure has a gradient (F, 2).  Noses and the
-thickest place are extremal: their values change as if they stayed where they are, and where they
-move to follows from the condition that puts them there.
+A section is linear in coefficients c (F, 2), so each measure has a gradient (F, 2).  The farthest
+point and the thickest place are extremal: their values change as if they stayed where they are, and
+where they move to follows from the condition that puts them there.  Where many points are nearly
+as far, the level above which they count follows from theirs (`fronts`).
 
 A map to size is ``s (1 + l n n')`` about the chord line, with n normal to it: a scale s, a lift l
 and a direction.  They are implicit functions of the raw section and of the relative thickness, by
@@ -17,12 +18,27 @@ from math import sqrt
 
 import numpy as np
 
-from bladegen.airfoils.section_curves import AMBIGUOUS
-from bladegen.curves.plane_maps import Numbers, between, distance
+from bladegen.curves.plane_maps import Numbers, distance, inverted
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
-from bladegen.variants.section_measures import Section, cell_of, noses, thickest
-from bladegen.variants.sizes import led
+from bladegen.variants.nose_measures import (
+    leveled,
+    mean_weights,
+    middle_of,
+    rival_weights,
+    rivals,
+    share_of,
+    squared,
+)
+from bladegen.variants.section_measures import (
+    Section,
+    along_contour,
+    basis,
+    cell_of,
+    highest,
+    peak,
+    thickest,
+)
 
 __all__ = ["LEAD_X", "LEAD_Y", "REACH", "THICKNESS", "gradients", "sized_slopes", "turning"]
 
@@ -30,41 +46,13 @@ LEAD_X, LEAD_Y, REACH, THICKNESS = range(4)  # rows of `gradients`
 
 
 @compiled
-def basis(s: Section, values: Array, place: float, cell: int, phi: Array) -> None:
-    """Fill the features' splines and two derivatives (3, F) at a place in a cell of landmarks."""
-    width = s.u[cell + 1] - s.u[cell]
-    h = place - s.u[cell]
-    for f in range(len(values)):
-        start, slope = values[f, cell], s.slopes[cell, f]
-        secant = (values[f, cell + 1] - start) / width
-        bend = s.slopes[cell + 1, f] + slope - 2.0 * secant
-        second, third = (secant - slope - bend) / width, bend / (width * width)
-        phi[0, f] = start + h * (slope + h * (second + h * third))
-        phi[1, f] = slope + h * (2.0 * second + 3.0 * h * third)
-        phi[2, f] = 2.0 * second + 6.0 * h * third
-
-
-@compiled
-def along_contour(s: Section, phi: Array) -> Numbers:
-    """Return the first and the second derivative of the contour where a basis (3, F) was taken."""
-    x1 = y1 = x2 = y2 = 0.0
-    for f in range(len(s.c)):
-        x1 += phi[1, f] * s.c[f, 0]
-        y1 += phi[1, f] * s.c[f, 1]
-        x2 += phi[2, f] * s.c[f, 0]
-        y2 += phi[2, f] * s.c[f, 1]
-    return x1, y1, x2, y2
-
-
-@compiled
 def nose_gradient(
     s: Section, values: Array, nose: Numbers, edge: Numbers, phi: Array, rows: Array
 ) -> None:
-    """Fill the gradients (3, F, 2) of a nose's x and y and of its distance from the edge."""
+    """Fill the gradients (4, F, 2) of the farthest point's x, y, u and squared distance."""
     basis(s, values, nose[2], cell_of(s.u, nose[2], len(s.u) // 2), phi)
     x1, y1, x2, y2 = along_contour(s, phi)
     x, y = nose[0] - edge[0], nose[1] - edge[1]
-    reach = sqrt(x * x + y * y)
     bending = x1 * x1 + y1 * y1 + x * x2 + y * y2
     for f in range(len(s.c)):
         own = phi[0, f] - 0.5 * (values[f, 0] + values[f, -1])
@@ -74,8 +62,47 @@ def nose_gradient(
         rows[0, f, 1] = x1 * uy
         rows[1, f, 0] = y1 * ux
         rows[1, f, 1] = phi[0, f] + y1 * uy
-        rows[2, f, 0] = x * own / reach
-        rows[2, f, 1] = y * own / reach
+        rows[2, f, 0], rows[2, f, 1] = ux, uy
+        rows[3, f, 0], rows[3, f, 1] = 2.0 * x * own, 2.0 * y * own
+
+
+@compiled
+def mean_gradient(
+    s: Section,
+    values: Array,
+    ends: tuple[Numbers, Numbers],
+    first: int,
+    level: float,
+    weights: Array,
+    rows: Array,
+) -> None:
+    """Fill gradients (3, F, 2): x and y of the mean of many points, and what rivals the farthest.
+
+    `ends` are the edge and what `mean_weights` returns with its `weights`; the third lacks what
+    the farthest point's own gradients add (`rival_weights`).
+    """
+    edge, mean = ends
+    far = sqrt(mean[0] * mean[0] + mean[1] * mean[1])
+    ax, ay = mean[0] / far, mean[1] / far
+    for f in range(len(s.c)):
+        end, own = 0.5 * (values[f, 0] + values[f, -1]), 0.0
+        for q in range(3):
+            rows[q, f, 0] = rows[q, f, 1] = 0.0
+        for i in range(weights.shape[1]):
+            if weights[3, i] > 0.0 or weights[2, i] > 0.0:
+                at = first + i
+                value = values[f, at] - end
+                own += weights[3, i] * value
+                dx = 2.0 * value * (s.points[0, at] - edge[0]) / level
+                dy = 2.0 * value * (s.points[1, at] - edge[1]) / level
+                for q in range(3):
+                    rows[q, f, 0] += weights[q, i] * dx
+                    rows[q, f, 1] += weights[q, i] * dy
+        own *= mean[2]
+        rows[0, f, 0] += own * ay * ay + end
+        rows[0, f, 1] -= own * ax * ay
+        rows[1, f, 0] -= own * ax * ay
+        rows[1, f, 1] += own * ax * ax + end
 
 
 @compiled
@@ -83,31 +110,42 @@ def gradients(s: Section, values: Array, work: Array, rows: Array, spare: Array)
     """Fill gradients (4, F, 2): the leading edge's x and y, the reach, and the thickness.
 
     `spare` (2, 4, F, 2) is room.  Returned are x and y of the leading edge and of the
-    trailing-edge midpoint.  Where noses share the edge, their shares move with their distances;
-    the reach is that of the farther one.
+    trailing-edge midpoint.
     """
-    one, two, edge = noses(s, work)
+    edge = middle_of(s.points)
+    squares, first = squared(s.points, edge, (1.0, 0.0, 0.0, 1.0), work)
+    best = highest(squares)[0]
     phi, psi = spare[1, :3, :, 0], spare[1, :3, :, 1]
-    nose_gradient(s, values, one, edge, phi, rows)
-    share = 0.0
-    if one != two:
-        other = spare[0]
-        nose_gradient(s, values, two, edge, phi, other)
-        ahead = distance(one, edge) - distance(two, edge)
-        share = led(ahead)
-        ratio = ahead / AMBIGUOUS
-        rate = -0.75 * (1.0 - ratio * ratio) / AMBIGUOUS if abs(ratio) < 1.0 else 0.0
+    one = peak(s, edge, best + first)
+    lead, top = (one[0], one[1]), (one[0] - edge[0]) ** 2 + (one[1] - edge[1]) ** 2
+    share, rate = share_of(rivals(s.u, squares, first, one[2], top)[1])
+    if share < 1.0:
+        nose_gradient(s, values, one, edge, phi, rows)
+    if share > 0.0:
+        other, weights = spare[0], np.empty((4, len(squares)))
+        level = leveled(s.u, squares, first, squares[best])
+        mean = mean_weights(s, edge, squares, first, level, weights)
+        of_top, of_place = rival_weights(s.u, squares, first, one[2], top, weights[2])
+        mean_gradient(s, values, (edge, mean), first, level, weights, other)
+        x, y = edge[0] + mean[0], edge[1] + mean[1]
         for f in range(len(s.c)):
             for j in range(2):
-                moved = rate * (rows[2, f, j] - other[2, f, j])
-                for i in range(2):
-                    rows[i, f, j] += share * (other[i, f, j] - rows[i, f, j])
-                    rows[i, f, j] += moved * (two[i] - one[i])
-                if ahead < 0.0:
-                    rows[2, f, j] = other[2, f, j]
-    lead = between(one, two, share)
+                if share == 1.0:
+                    rows[0, f, j], rows[1, f, j] = other[0, f, j], other[1, f, j]
+                else:
+                    moved = level * other[2, f, j]
+                    moved = rate * (moved + of_top * rows[3, f, j] + of_place * rows[2, f, j])
+                    rows[0, f, j] += share * (other[0, f, j] - rows[0, f, j])
+                    rows[1, f, j] += share * (other[1, f, j] - rows[1, f, j])
+                    rows[0, f, j] += moved * (x - one[0])
+                    rows[1, f, j] += moved * (y - one[1])
+        lead = one[0] + share * (x - one[0]), one[1] + share * (y - one[1])
     length = distance(lead, edge)
     ax, ay = (edge[0] - lead[0]) / length, (edge[1] - lead[1]) / length
+    for f in range(len(s.c)):
+        end = 0.5 * (values[f, 0] + values[f, -1])
+        rows[REACH, f, 0] = ax * (end - rows[LEAD_X, f, 0]) - ay * rows[LEAD_Y, f, 0]
+        rows[REACH, f, 1] = ay * (end - rows[LEAD_Y, f, 1]) - ax * rows[LEAD_X, f, 1]
     height, upper, lower = thickest(s, (ax, ay), work)
     basis(s, values, upper, cell_of(s.u, upper, len(s.u) // 4), phi)
     basis(s, values, lower, cell_of(s.u, lower, 3 * len(s.u) // 4), psi)
@@ -243,18 +281,3 @@ def solved(
             for i in range(3):
                 shares[q, m] += inverse[m, i] * right[q, i]
     return shares
-
-
-@compiled
-def inverted(m: Array) -> Array:
-    """Return the inverse of a 3 x 3 matrix."""
-    result = np.empty((3, 3))
-    for i in range(3):
-        for j in range(3):
-            p, q, r, s = (j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3
-            result[i, j] = m[p, r] * m[q, s] - m[p, s] * m[q, r]
-    determinant = m[0, 0] * result[0, 0] + m[0, 1] * result[1, 0] + m[0, 2] * result[2, 0]
-    for i in range(3):
-        for j in range(3):
-            result[i, j] /= determinant
-    return result

@@ -100,10 +100,12 @@ class Features:
     def turned(self, sections: Array, to_space: Array) -> Array:
         """Return how far chord lines of sections (b, k, n, 3) turn from the baseline's, (b, k)."""
         plain, _, M, b = self.shapes
-        before = angles(affine.restore(plain, M, b))
+        before = angles(affine.restore(plain, M, b), self.blade.u)
         result = np.empty(sections.shape[:2])
         for i, (section, axes) in enumerate(zip(sections, to_space, strict=True)):
             x, y, z = np.moveaxis(section - axes[:, None, 2], -1, 0).copy()
             local = [x * a + y * b + z * c for a, b, c in axes[:, :2].transpose(1, 2, 0)[..., None]]
-            result[i] = angles(np.moveaxis(np.stack(local), 0, -1)) - before  # chords squared
+            result[i] = (
+                angles(np.moveaxis(np.stack(local), 0, -1), self.blade.u) - before
+            )  # chords squared
         return result

@@ -1,4 +1,4 @@
-"""Compiled: what a section measures on its splines: its noses, and its thickest place.
+"""Compiled: what a section measures on its splines: its farthest point, and its thickest place.
 
 `section_curves.SectionCurves` once more, for one section in a loop of a compiled function, with the
 notation and the tolerances there.  Points are (2, n): x, then y; landmarks i and -1 - i lie
@@ -8,14 +8,12 @@ opposite.  Splines are linear in features (`batch`), and so are their slopes at 
 from math import copysign
 from typing import NamedTuple
 
-from bladegen.airfoils.noses import SAME_NOSE
-from bladegen.airfoils.resizing import RIVAL
 from bladegen.curves.plane_maps import Numbers, turned
 from bladegen.curves.roots import ITERATIONS, PARAMETER_TOLERANCE
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
 
-__all__ = ["Section", "noses", "thickest"]
+__all__ = ["Section", "along_contour", "basis", "cell_of", "highest", "peak", "thickest"]
 
 ACROSS = 8  # Newton steps to the point at the same x on the other side; two are usual
 REACH = 4.0  # landmarks that one step towards the thickest place may pass
@@ -28,33 +26,6 @@ class Section(NamedTuple):
     slopes: Array
     c: Array
     points: Array
-
-
-@compiled
-def noses(s: Section, work: Array) -> tuple[Numbers, ...]:
-    """Return the point farthest from the trailing-edge midpoint, its rival or itself, and that.
-
-    The first two have their place u besides.
-    """
-    points = s.points
-    first = points.shape[1] // 4  # noses are in the front half
-    edge = 0.5 * (points[0, 0] + points[0, -1]), 0.5 * (points[1, 0] + points[1, -1])
-    x, y = points[0, first:-first], points[1, first:-first]
-    squares = work[: len(x)]
-    for i in range(len(x)):
-        squares[i] = (x[i] - edge[0]) ** 2 + (y[i] - edge[1]) ** 2
-    best, alone = highest(squares)
-    other, least = best, squares[best] * (1.0 - RIVAL)
-    if not alone:
-        for i in range(1, len(squares) - 1):
-            here = squares[i]
-            rises = here > least and here > squares[i - 1] and here >= squares[i + 1]
-            if rises and abs(i - best) > SAME_NOSE:
-                other, least = i, here
-    one = two = peak(s, edge, best + first)
-    if other != best:
-        two = peak(s, edge, other + first)
-    return one, two, edge
 
 
 @compiled
@@ -198,3 +169,30 @@ def thickest(s: Section, along: Numbers, work: Array) -> Numbers:
         if abs(t - start) <= PARAMETER_TOLERANCE:
             break
     return height, t, w
+
+
+@compiled
+def basis(s: Section, values: Array, place: float, cell: int, phi: Array) -> None:
+    """Fill the features' splines and two derivatives (3, F) at a place in a cell of landmarks."""
+    width = s.u[cell + 1] - s.u[cell]
+    h = place - s.u[cell]
+    for f in range(len(values)):
+        start, slope = values[f, cell], s.slopes[cell, f]
+        secant = (values[f, cell + 1] - start) / width
+        bend = s.slopes[cell + 1, f] + slope - 2.0 * secant
+        second, third = (secant - slope - bend) / width, bend / (width * width)
+        phi[0, f] = start + h * (slope + h * (second + h * third))
+        phi[1, f] = slope + h * (2.0 * second + 3.0 * h * third)
+        phi[2, f] = 2.0 * second + 6.0 * h * third
+
+
+@compiled
+def along_contour(s: Section, phi: Array) -> Numbers:
+    """Return the first and the second derivative of the contour where a basis (3, F) was taken."""
+    x1 = y1 = x2 = y2 = 0.0
+    for f in range(len(s.c)):
+        x1 += phi[1, f] * s.c[f, 0]
+        y1 += phi[1, f] * s.c[f, 1]
+        x2 += phi[2, f] * s.c[f, 0]
+        y2 += phi[2, f] * s.c[f, 1]
+    return x1, y1, x2, y2

@@ -52,11 +52,12 @@ class Exactly:
         return total
 
     def landmark(self, u):
-        start, end, share = (-1, self.nose, 2 * u) if u <= 0.5 else (self.nose, 1, 2 * u - 1)
-        wanted = share * self.length(start, end)
-        if share in (0.0, 1.0):
-            return self.point(end if share else start)
-        return self.point(brentq(lambda p: self.length(start, p) - wanted, start, end, xtol=1e-15))
+        if u in (0.0, 0.5, 1.0):
+            return self.point({0.0: -1, 0.5: self.nose, 1.0: 1}[u])
+        total = self.length(-1, 1)
+        shift = 1 / np.tan(np.pi * self.length(-1, self.nose) / total)
+        wanted = total * (0.5 - np.arctan(1 / np.tan(np.pi * u) + shift) / np.pi)
+        return self.point(brentq(lambda p: self.length(-1, p) - wanted, -1, 1, xtol=1e-15))
 
 
 BLUNT = np.repeat([1.7, -0.3], 9)  # farthest from the trailing edge behind x = 0

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from bladegen.airfoils import landmarks as lm
+from bladegen.curves.arc_lengths import divided
 from bladegen.errors import GeometryError
 from strategies import airfoils, circle, ellipse, naca
 
@@ -56,15 +57,37 @@ def test_landmarks_lie_on_the_airfoil(xy):
 
 
 @given(airfoils(), st.sampled_from([lm.uniform, lm.cosine, lm.clustered]))
-def test_each_side_is_divided_alike_by_arc_length(xy, spacing):
+def test_arc_length_is_one_smooth_function_of_the_sides_lengths(xy, spacing):
     n = 1601
     points = lm.landmarks(xy, n, spacing=spacing)
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    nose = arc[n // 2]
-    sides = arc[: n // 2 + 1] / nose, (arc[-1] - arc[n // 2 :][::-1]) / (arc[-1] - nose)
-    wanted = 2.0 * lm.landmark_parameters(n, spacing)[: n // 2 + 1]
-    for side in sides:
-        assert_allclose(side, wanted, atol=2e-4)  # chords are shorter than arcs at the nose
+    inner = slice(1, -1)
+    turned = 1.0 / np.tan(np.pi * arc[inner] / arc[-1])
+    wanted = 1.0 / np.tan(np.pi * lm.landmark_parameters(n, spacing)[inner])
+    shift = turned - wanted  # the same at all landmarks: that of the nose, where u is 1/2
+    rate = (np.pi / arc[-1]) * (1.0 + turned**2)  # chords are shorter than arcs at the nose
+    assert_allclose((shift - shift[n // 2 - 1]) / rate, 0.0, atol=2e-4)
+
+
+@given(airfoils())
+def test_landmarks_pass_the_nose_without_a_change_of_step(xy):
+    points = lm.landmarks(xy, 6401, spacing=lm.uniform)
+    before, after = np.linalg.norm(np.diff(points, axis=0), axis=1)[3199:3201]
+    assert_allclose(after, before, rtol=2e-3)
+
+
+@given(st.floats(0.02, 0.98), st.floats(0.02, 0.98))
+def test_lengths_are_divided_smoothly_all_around(middle, other):
+    u = np.linspace(0.0, 1.0, 4001)
+    share = divided(u, middle)
+    assert (share[0], share[2000], share[-1]) == (0.0, middle, 1.0)
+    assert np.all(np.diff(share) > 0.0)
+    assert_allclose(divided(1.0 - u, 1.0 - middle), 1.0 - share, rtol=0, atol=1e-12)
+    assert_allclose(divided(share, 1.0 - middle), u, rtol=0, atol=1e-12)  # and back again
+    assert_allclose(divided(u, np.array([[middle], [other]]))[0], share, rtol=0, atol=0)
+    between = 0.5 * (u[1:] + u[:-1])
+    speed = (np.sin(np.pi * divided(between, middle)) / np.sin(np.pi * between)) ** 2
+    assert_allclose(np.diff(share) / np.diff(u), speed, rtol=5e-3)  # one law on both sides
 
 
 @given(COUNTS)

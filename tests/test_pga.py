@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen.airfoils.landmarks import clustered, cosine, landmark_parameters, landmarks
+from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.errors import GeometryError, SpaceError
 from bladegen.formats.baselines import baselines
 from bladegen.shapes import affine, grassmann
@@ -117,7 +118,7 @@ def test_damaged_and_foreign_files_are_refused(tmp_path):
     arrays = dict(np.load(path))
     for name, changed, message in (
         ("mean", arrays["mean"] * 1.1, "damaged"),
-        ("version", np.array(99), "version 99, allowed is 1"),
+        ("version", np.array(99), "version 99, allowed is 2, .*bladegen space build"),
         ("version", np.array([1, 1]), "version"),
     ):
         np.savez(path, **{**arrays, name: changed})
@@ -207,6 +208,28 @@ def test_a_coordinate_moves_a_contour_alike_whatever_its_landmarks(spacing):
     moved = np.abs(wanted - fine.profiles(eta, other.u)).max()
     assert moved > 0.02
     assert_allclose(other.perturbed(space, t).profiles(eta), wanted, atol=0.01 * moved)
+
+
+def test_modes_pass_the_leading_edge_as_they_pass_their_other_landmarks():
+    """Slopes in u change there by no more than beside it: by ten times as much once."""
+    space = bg.ShapeSpace.bundled()
+    nose = len(space.u) // 2
+    for column in (space.mean, *space.modes):
+        slopes = np.diff(column, axis=0) / np.diff(space.u)[:, None]
+        changes = np.linalg.norm(np.diff(slopes, axis=0), axis=1)[nose - 5 : nose + 4]
+        assert changes[4] < 1.2 * changes.max(where=np.arange(9) != 4, initial=0.0)
+
+
+def test_a_perturbed_nose_is_as_round_as_its_sides_make_it():
+    blade, space = bg.Blade.from_definition(bg.read("nrel5mw")), bg.ShapeSpace.bundled()
+    odd = {"allow_odd": True, "allow_extrapolation": True}
+    variant = blade.perturbed(space, [-0.1, 0.0, 0.0, 0.0], **odd)
+    curve = SectionSplines(blade.u).fit(variant.profiles(np.array([0.3])))
+    u = 0.5 + 1e-3 * np.linspace(-1.0, 1.0, 9)
+    _, d1, d2 = (v[0] for v in curve.at(u[None]))
+    turn = (d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0]) / np.hypot(*d1.T) ** 3
+    low, high = np.sort(turn[[0, -1]])
+    assert np.all((turn > 0.9 * low) & (turn < 1.1 * high))
 
 
 def test_an_evaluated_space_encodes_what_it_decodes_and_keeps_its_bounds(tmp_path):

@@ -3,8 +3,8 @@
 Landmarks run trailing edge -> suction side -> leading edge -> pressure side -> trailing
 edge, in chords, in the airfoil's own axes.  The leading edge is the point of the contour's
 spline farthest from the trailing-edge midpoint; it is the middle landmark of an odd n.
-Each side is divided alike by arc length, so that landmark i is the same fraction of a side
-on every airfoil, the root circle included.
+Landmark i is the same place on every airfoil, the root circle included: arc length is a smooth
+function of the landmark parameter that knows nothing of the airfoil but how long its sides are.
 """
 
 from bisect import bisect_right
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bladegen.airfoils.fairing import fair
-from bladegen.curves.arc_lengths import lengths
+from bladegen.curves.arc_lengths import divided, lengths
 from bladegen.errors import GeometryError
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array, readonly
@@ -81,7 +81,8 @@ def landmark_parameters(n: int, spacing: Spacing = clustered) -> Array:
     Returns
     -------
     (n,) array
-        Arc-length fraction of a side, halved; symmetric about 0.5.
+        Symmetric about 0.5; fractions of the contour's length where both sides are as long, and
+        what becomes of them elsewhere is `arc_lengths.divided`'s.
     """
     if n < 5 or n % 2 == 0:
         raise GeometryError(f"landmarks: got {n}, allowed are odd numbers from 5, such as 401")
@@ -118,13 +119,13 @@ class Contour:
     __repr__ = brief
 
     def landmarks(self, parameters: Array) -> Array:
-        """Return the points (n, 2) at the given fractions of each side's arc length.
+        """Return the points (n, 2) at landmark parameters.
 
         Parameters
         ----------
         parameters : (n,) array
             0 to 0.5 along the suction side, 0.5 to 1 along the pressure side, as
-            `landmark_parameters` makes them.
+            `landmark_parameters` makes them.  The contour is a smooth function of them.
         """
         return _placed(self, np.asarray(parameters, dtype=np.float64).tobytes())
 
@@ -139,7 +140,7 @@ def landmarks(coordinates: Array, n: int = 401, *, spacing: Spacing = clustered)
     n : int
         Number of landmarks, odd.
     spacing : callable
-        Spacing along each side from trailing to leading edge.
+        Spacing along sides of one length from trailing to leading edge.
 
     Returns
     -------
@@ -212,9 +213,7 @@ def _placed(curve: Contour, parameters_in_bytes: bytes) -> Array:
     knots = np.union1d(curve.spline.x, [curve.leading_edge])
     arc = np.concatenate([[0.0], np.cumsum(lengths(curve.spline, knots[:-1], knots[1:]))])
     nose = arc[np.searchsorted(knots, curve.leading_edge)]
-    suction = 2.0 * parameters * nose
-    pressure = nose + (2.0 * parameters - 1.0) * (arc[-1] - nose)
-    target = np.where(parameters <= 0.5, suction, pressure)
+    target = arc[-1] * divided(parameters, nose / arc[-1])
     segment = np.clip(np.searchsorted(arc, target, side="right") - 1, 0, len(knots) - 2)
     start, end = knots[segment], knots[segment + 1]
     t = start + (end - start) * (target - arc[segment]) / (arc[segment + 1] - arc[segment])

@@ -11,6 +11,7 @@ from math import comb
 import numpy as np
 
 from bladegen.airfoils.landmarks import landmark_parameters
+from bladegen.curves.arc_lengths import divided
 from bladegen.shapes import affine
 from bladegen.support.arrays import Array
 
@@ -77,7 +78,7 @@ def shapes(coefficients: Array, u: Array) -> Array:
     coefficients : (m, 18) array
     u : (n,) array
         Landmark parameters, as `landmarks.landmark_parameters` makes them: the leading edge is
-        the point farthest from the trailing edge, each side is divided by arc length.
+        the point farthest from the trailing edge.
 
     Returns
     -------
@@ -90,11 +91,7 @@ def shapes(coefficients: Array, u: Array) -> Array:
     arc = _running_length(points, tangents, speed)
     at_nose = _hermite_at(nose, arc, speed)
     total = arc[:, -1]
-    target = np.where(
-        u <= 0.5,
-        2.0 * u * at_nose[:, None],
-        at_nose[:, None] + (2.0 * u - 1.0) * (total - at_nose)[:, None],
-    )
+    target = total[:, None] * divided(u, (at_nose / total)[:, None])
     place = _inverse(target, arc, speed)
     return np.stack([_hermite_at(place, points[..., i], tangents[..., i]) for i in (0, 1)], axis=-1)
 

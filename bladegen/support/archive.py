@@ -21,7 +21,7 @@ from bladegen.support.files import content_of, replacing
 
 __all__ = ["checksum", "load_arrays", "save_arrays"]
 
-VERSION = 1
+VERSION = 2  # 1: each side was divided by arc length for itself
 MAX_BYTES = 200 * 2**20  # of the file, and of what it unpacks to
 LABELS = ("version", "about", "checksum")
 DAMAGED = (  # what zipfile, zlib and numpy raise at bytes that are no archive of arrays
@@ -66,7 +66,10 @@ def load_arrays(path: Path, names: Sequence[str]) -> tuple[dict[str, Array], str
     except DAMAGED as error:
         raise SpaceError(f"{path}: is no shape space: {error}") from None
     if held["version"].shape != () or held["version"] != VERSION:
-        raise SpaceError(f"{path}: has version {held['version']}, allowed is {VERSION}")
+        raise SpaceError(
+            f"{path}: has version {held['version']}, allowed is {VERSION}, as landmarks are spaced "
+            "otherwise; make it again (bladegen space build)"
+        )
     arrays = {name: held[name] for name in names}
     about = str(held["about"])
     if str(held["checksum"]) != checksum(arrays, about):

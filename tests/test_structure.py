@@ -11,7 +11,7 @@ from bladegen.definition.structure.positions import LEADING_EDGE, Arc, PlaneCut,
 from bladegen.definition.structure.structure import Layer, Material, Structure, Web
 from bladegen.errors import DefinitionError
 from bladegen.formats.common.document import Node, Notes
-from bladegen.formats.windio import structure1, structure2
+from bladegen.formats.windio.structure import reading1, reading2
 
 DELETE = object()
 GRID = [0.0, 0.5, 1.0]
@@ -41,7 +41,7 @@ def read(version, structure, materials=(FOAM, GLASS)):
     key = {1: "internal_structure_2d_fem", 2: "structure"}[version]
     notes = Notes()
     document = {"components": {"blade": {key: structure}}, "materials": list(materials)}
-    found = {1: structure1, 2: structure2}[version].read(Node(document, "", notes))
+    found = {1: reading1, 2: reading2}[version].read(Node(document, "", notes))
     assert not notes.problems  # nothing inside the skin refuses a file
     return found, [str(finding) for finding in notes.findings]
 

@@ -63,6 +63,8 @@ class Writer:
         others beside it, under names that start with the main file's.
     polars : bool
         Whether it holds polars.
+    structure : bool
+        Whether it holds what lies inside the skin.
     tolerance : float, optional
         How far a blade may be off that is read back [m] without a finding; None for formats that
         hold no blade.
@@ -74,6 +76,7 @@ class Writer:
     write: Callable[[BladeDefinition, Path], tuple[Finding, ...]]
     polars: bool = False
     tolerance: float | None = WHOLE
+    structure: bool = False
 
     def __post_init__(self) -> None:
         if self.suffixes != ("",):

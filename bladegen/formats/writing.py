@@ -76,6 +76,8 @@ def write(
         what, polars=polars if row.polars else "keep", reynolds=reynolds, progress=progress
     )
     said = said if row.polars else ()
+    if definition.structure is not None and not (row.structure or row.tolerance is None):
+        said += (Finding("structure", f"has no place in {row.title}; left out"),)
     mark = mark if row in FORMATS else unmarked  # those of plug-ins stay as they are
     if row.tolerance is None:
         return said + marked(partial(row.write, definition), path, mark)

@@ -13,6 +13,7 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.blade.spans import MIRROR, span_fractions
 from bladegen.definition.distribution import united
+from bladegen.definition.structure.positions import knots
 from bladegen.definition.structure.structure import Layer, Structure, Web
 from bladegen.errors import Finding
 from bladegen.layup.fit import doubts
@@ -114,18 +115,15 @@ class Layup:
     @cached_property
     def _weighed(self) -> tuple[Array, Array]:
         """Return masses (layers,) [kg] and their first moments (layers, 3) [kg m]."""
-        grids = [layer.thickness.grid for layer in self.structure.layers]
-        definition = self.blade.definition
-        knots = united(
-            definition.chord.grid,
-            definition.twist.grid,
-            self.blade.eta,
-            *grids,
-            [0.0, 1.0],
-            apart=APART,
-        )
-        half = 0.5 * np.diff(knots)
-        eta = ((knots[:-1] + half)[:, None] + half[:, None] * _NODES).reshape(-1)
+        structure, definition = self.structure, self.blade.definition
+        grids: list[ArrayLike] = [layer.thickness.grid for layer in structure.layers]
+        placed: tuple[Web | Layer, ...] = (*structure.webs, *structure.layers)
+        for one in placed:
+            grids += [one.extent, knots(one.start), knots(one.end)]
+        grids += [definition.chord.grid, definition.twist.grid, self.blade.eta, [0.0, 1.0]]
+        knotted = united(*grids, apart=APART)
+        half = 0.5 * np.diff(knotted)
+        eta = ((knotted[:-1] + half)[:, None] + half[:, None] * _NODES).reshape(-1)
         step = (half[:, None] * _WEIGHTS).reshape(-1)
         laid = self.at(eta)
         weight = laid.layer_mass * step * np.linalg.norm(definition.axis(eta, 1), axis=-1)

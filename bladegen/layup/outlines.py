@@ -11,10 +11,11 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.definition.distribution import Distribution
+from bladegen.definition.reference_axis import ReferenceAxis
 from bladegen.definition.structure.positions import Arc, LeadingEdge, PlaneCut, Position
 from bladegen.support.arrays import Array, Indices, Mask
 
-__all__ = ["Outlines", "within"]
+__all__ = ["Outlines", "beside_axis", "within"]
 
 ENDS = 1e-9  # of the span, by which places may lie beyond the ends of a grid
 
@@ -148,7 +149,8 @@ class Outlines:
         y = self.flat[..., 1] * c[:, None] + self.flat[..., 0] * s[:, None]
         off = within(plane.offset, self.eta)
         if plane.through is not None:
-            off = off + self._line(plane.through, c, s)
+            axis = self.blade.definition.axis
+            off = off + beside_axis(axis, self.eta, plane.through, turn)
         y = y - off[:, None]
         nose = np.argmin(y, axis=1)[:, None]
         cell = np.arange(y.shape[1] - 1)
@@ -163,14 +165,21 @@ class Outlines:
         start, end = self.fractions[row, first], self.fractions[row, first + 1]
         return np.where(hit, start + share * (end - start), np.nan)
 
-    def _line(self, through: tuple[float, float], c: Array, s: Array) -> Array:
-        """Return how far a line through two points of the axis lies from the axis, in y [m]."""
-        axis, ends = self.blade.axis(self.eta), self.blade.axis(np.array(through))
-        own = axis[:, 1] * c + axis[:, 0] * s
-        first, last = (end[1] * c + end[0] * s for end in ends)
-        along = (axis[:, 2] - ends[0, 2]) / (ends[1, 2] - ends[0, 2])
-        distance: Array = first + along * (last - first) - own
-        return distance
+
+def beside_axis(
+    axis: ReferenceAxis, eta: Array, through: tuple[float, float], turn: Array
+) -> Array:
+    """Return how far a line through two points of the axis lies from the axis, in y [m].
+
+    Everything is turned about z by `turn` (k,) [rad] before, as sections are to be cut.
+    """
+    c, s = np.cos(turn), np.sin(turn)
+    own, ends = axis(eta), axis(np.array(through))
+    y = own[:, 1] * c + own[:, 0] * s
+    first, last = (end[1] * c + end[0] * s for end in ends)
+    along = (own[:, 2] - ends[0, 2]) / (ends[1, 2] - ends[0, 2])
+    distance: Array = first + along * (last - first) - y
+    return distance
 
 
 def within(quantity: Distribution, eta: Array) -> Array:

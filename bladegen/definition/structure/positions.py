@@ -12,7 +12,17 @@ from bladegen.errors import DefinitionError
 from bladegen.support.arguments import amount, instance, one_of
 from bladegen.support.values import brief
 
-__all__ = ["LEADING_EDGE", "Arc", "LeadingEdge", "PlaneCut", "Position", "Shifted", "base_of"]
+__all__ = [
+    "LEADING_EDGE",
+    "Arc",
+    "LeadingEdge",
+    "PlaneCut",
+    "Position",
+    "Shifted",
+    "base_of",
+    "extent_of",
+    "knots",
+]
 
 SIDES = ("suction", "pressure")
 FRAMES = ("root", "chord")
@@ -105,3 +115,23 @@ def base_of(position: Position) -> Position:
     while isinstance(position, Shifted):
         position = position.base
     return position
+
+
+def extent_of(*positions: Position) -> tuple[float, float]:
+    """Return the span fractions between which all of some places are known."""
+    low, high = 0.0, 1.0
+    for position in positions:
+        base = base_of(position)
+        if isinstance(base, Arc | PlaneCut):
+            grid = (base.fraction if isinstance(base, Arc) else base.offset).grid
+            low, high = max(low, float(grid[0])), min(high, float(grid[-1]))
+    return low, high
+
+
+def knots(position: Position) -> tuple[float, ...]:
+    """Return the span fractions at which a place, or a width that leads to it, starts or ends."""
+    found: tuple[float, ...] = extent_of(position)
+    while isinstance(position, Shifted):
+        found += float(position.width.grid[0]), float(position.width.grid[-1])
+        position = position.base
+    return found

@@ -34,6 +34,8 @@ class Material:
         [m]
     orthotropic : bool
         Whether the directions differ.
+    others : tuple of (str, value)
+        What else the file says of it, under its own names: cost, waste, fatigue, source.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Material:
     shear: Axes | None = None
     ply_thickness: float | None = None
     orthotropic: bool = False
+    others: tuple[tuple[str, str | float | tuple[float, ...]], ...] = ()
 
     __repr__ = brief
 

@@ -9,6 +9,7 @@ document.
 
 import math
 from collections.abc import Callable, Iterator, Mapping, MutableMapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +76,8 @@ def write_into_turbine(
     if not found or not isinstance(plain, Mapping):
         raise FileError(str(turbine), [f"holds no blade, must hold {turbine_file.MARK}"])
     findings: list[Finding] = []
-    new = found[0].document(definition, lambda w, said: findings.append(Finding(w, said)))
+    plainly = replace(definition, structure=None)  # that of the turbine file stays
+    new = found[0].document(plainly, lambda w, said: findings.append(Finding(w, said)))
     findings = [finding for finding in findings if finding.where.split(".")[0] not in ROTOR]
     yaml, full = round_trip(turbine)
     blade = _member(full, ("components", "blade"), turbine)

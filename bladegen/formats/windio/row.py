@@ -22,8 +22,8 @@ FORMAT = Format(
     "windIO",
     Reader(turbine_file.SUFFIXES, turbine_file.MARK, turbine_file.recognises, turbine_file.read),
     (
-        Writer("windio2", "windIO 2", YAML, version2.write, polars=True),
-        Writer("windio1", "windIO 1", YAML, version1.write, polars=True),
+        Writer("windio2", "windIO 2", YAML, version2.write, polars=True, structure=True),
+        Writer("windio1", "windIO 1", YAML, version1.write, polars=True, structure=True),
     ),
     put_back=PutBack(YAML, _into),
     alone=True,

@@ -10,8 +10,9 @@ from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distr
 from bladegen.formats.airfoils.unique_names import uniquely_named
 from bladegen.formats.common.document import Node, Range
 from bladegen.formats.common.redefinition import missed, sampled
-from bladegen.formats.windio import reading, structure1, writing
+from bladegen.formats.windio import reading, writing
 from bladegen.formats.windio.reading import Entry, Layout
+from bladegen.formats.windio.structure import reading1, writing1
 from bladegen.formats.windio.writing import Document, Note
 from bladegen.support.arrays import Array
 
@@ -48,7 +49,7 @@ LAYOUT = Layout(
     ),
     angle=1.0,
     turn=Range(-math.pi / 2, math.pi / 2, "rad"),
-    structure=structure1.read,
+    structure=reading1.read,
 )
 recognises = partial(reading.recognises, layout=LAYOUT)
 read = partial(reading.read, layout=LAYOUT)
@@ -73,7 +74,11 @@ def document(definition: BladeDefinition, note: Note) -> Document:
     if rotor.tilt is not None:
         components["nacelle"] = {"drivetrain": {"uptilt": rotor.tilt}}
     entries = writing.airfoil_entries(stations, "relative_thickness", polars)
-    return writing.turbine(definition, "1.0", components, entries)
+    made = writing.turbine(definition, "1.0", components, entries)
+    inside = writing1.document(definition, note)
+    if inside is not None:
+        components["blade"]["internal_structure_2d_fem"], made["materials"] = inside
+    return made
 
 
 def outer_shape(definition: BladeDefinition, note: Note) -> Document:

@@ -18,8 +18,9 @@ from bladegen.definition.thickness import ruled
 from bladegen.formats.airfoils.unique_names import uniquely_named
 from bladegen.formats.common.document import FRACTION, Node, Range
 from bladegen.formats.common.redefinition import missed, sampled
-from bladegen.formats.windio import reading, structure2, writing
+from bladegen.formats.windio import reading, writing
 from bladegen.formats.windio.reading import Entry, Layout
+from bladegen.formats.windio.structure import reading2, writing2
 from bladegen.formats.windio.writing import Document, Note
 
 __all__ = ["LAYOUT", "blade", "document", "polars", "read", "recognises", "write"]
@@ -51,7 +52,7 @@ LAYOUT = Layout(
     tilt=(("components", "drivetrain", "outer_shape", "uptilt"),),
     angle=math.pi / 180.0,
     turn=Range(-90.0, 90.0, "deg"),
-    structure=structure2.read,
+    structure=reading2.read,
 )
 recognises = partial(reading.recognises, layout=LAYOUT)
 read = partial(reading.read, layout=LAYOUT)
@@ -69,7 +70,11 @@ def document(definition: BladeDefinition, note: Note) -> Document:
     if rotor.tilt is not None:
         components["drivetrain"] = {"outer_shape": {"uptilt": DEGREES * rotor.tilt}}
     entries = writing.airfoil_entries(stations, "rthick", polars)
-    return writing.turbine(definition, "2.0", components, entries)
+    made = writing.turbine(definition, "2.0", components, entries)
+    inside = writing2.document(definition, note)
+    if inside is not None:
+        components["blade"]["structure"], made["materials"] = inside
+    return made
 
 
 def _hub(rotor: Rotor, note: Note) -> Document:

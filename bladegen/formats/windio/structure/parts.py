@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from bladegen.definition.distribution import Distribution
-from bladegen.definition.structure.positions import Arc, PlaneCut, Position, base_of
+from bladegen.definition.structure.positions import Arc, Position
 from bladegen.definition.structure.structure import Axes, Layer, Material, Stated, Structure, Web
 from bladegen.errors import DefinitionError
 from bladegen.formats.common.document import FRACTION, Node, Notes, Range
@@ -19,11 +19,11 @@ from bladegen.formats.common.document import FRACTION, Node, Notes, Range
 __all__ = [
     "ARC",
     "DEEPEST",
+    "HELD",
     "OFFSET",
     "WIDTH",
     "assembled",
     "curve",
-    "extent_of",
     "given_extent",
     "guarded",
     "layer",
@@ -47,6 +47,8 @@ HELD = {
     "Xc": "compressive",
     "S": "shear",
 }
+
+OWN = frozenset({"name", "rho", "orth", "ply_t", *HELD})
 
 T = TypeVar("T")
 
@@ -83,20 +85,6 @@ def curve(node: Node, allowed: Range, factor: float = 1.0) -> Distribution | Non
 def whole(value: float) -> Arc:
     """Return the same fraction of the arc at all spans."""
     return Arc(Distribution.constant(value))
-
-
-def extent_of(*positions: Position) -> tuple[float, float]:
-    """Return the span fractions between which all of some positions are known."""
-    low, high = 0.0, 1.0
-    for position in positions:
-        base, grid = base_of(position), None
-        if isinstance(base, Arc):
-            grid = base.fraction.grid
-        elif isinstance(base, PlaneCut):
-            grid = base.offset.grid
-        if grid is not None:
-            low, high = max(low, float(grid[0])), min(high, float(grid[-1]))
-    return low, high
 
 
 def layer(
@@ -181,7 +169,7 @@ def assembled(
 
 def _once(inside: Node, kind: str, read: Callable[[Node], T | None]) -> dict[str, T]:
     """Return the parts of a list by their place in the file, each name once."""
-    if not inside.has(kind):
+    if not inside.has(kind) or inside.value[kind] == []:
         return {}
     listed, notes = inside.value[kind], Notes()
     if isinstance(listed, list) and len(listed) > MOST:
@@ -227,7 +215,16 @@ def _material(node: Node) -> Material | None:
     if name is None or density is None:
         return None
     orthotropic = bool(node.value.get("orth"))
-    return Material(name, density, **held, ply_thickness=ply, orthotropic=orthotropic)
+    others = tuple((key, _plain(one)) for key, one in node.value.items() if key not in OWN)
+    kept = tuple((key, one) for key, one in others if one is not None)
+    return Material(name, density, **held, ply_thickness=ply, orthotropic=orthotropic, others=kept)
+
+
+def _plain(value: object) -> str | float | tuple[float, ...] | None:
+    """Return a text, a number or a list of numbers, None for anything else."""
+    if isinstance(value, list) and all(isinstance(one, int | float) for one in value):
+        return tuple(value)
+    return value if isinstance(value, str | int | float) else None
 
 
 def _axes(node: Node) -> Axes | None:

@@ -21,10 +21,11 @@ from bladegen.definition.structure.positions import (
     PlaneCut,
     Position,
     Shifted,
+    extent_of,
 )
 from bladegen.definition.structure.structure import NOTHING, Layer, Stated, Structure, Web
 from bladegen.formats.common.document import Node, Notes, Range
-from bladegen.formats.windio import structure_parts as parts
+from bladegen.formats.windio.structure import parts
 
 __all__ = ["read"]
 
@@ -56,7 +57,7 @@ def read(root: Node) -> Structure | None:
         low, high = parts.given_extent(node)
         if name is None or places is None:
             return None
-        least, most = parts.extent_of(*places)
+        least, most = extent_of(*places)
         return Web(name, *places, (max(low, least), min(high, most)), _stated(node, places))
 
     def layer(node: Node) -> Layer | None:

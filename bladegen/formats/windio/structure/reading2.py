@@ -22,10 +22,11 @@ from bladegen.definition.structure.positions import (
     PlaneCut,
     Position,
     Shifted,
+    extent_of,
 )
 from bladegen.definition.structure.structure import Layer, Structure, Web
 from bladegen.formats.common.document import FRACTION, Node, Notes, Range
-from bladegen.formats.windio import structure_parts as parts
+from bladegen.formats.windio.structure import parts
 
 __all__ = ["read"]
 
@@ -56,7 +57,7 @@ def read(root: Node) -> Structure | None:
         (start, first), (end, last) = ends
         if name is None or start is None or end is None:
             return None
-        least, most = parts.extent_of(start, end)
+        least, most = extent_of(start, end)
         return Web(name, start, end, (max(low, least), min(high, most)), (first, last))
 
     def layer(node: Node) -> Layer | None:

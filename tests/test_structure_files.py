@@ -1,0 +1,151 @@
+"""What lies inside the skin goes along: into windIO 1 and 2 and back, of variants too."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from test_structure import WAYS, read
+
+import bladegen as bg
+from bladegen.definition.structure.positions import Arc, PlaneCut, Shifted
+from bladegen.formats.common.document import Node, Notes
+from bladegen.formats.windio.structure import reading1, reading2, writing1, writing2
+
+VERSIONS = {
+    1: (writing1.document, reading1.read, "internal_structure_2d_fem"),
+    2: (writing2.document, reading2.read, "structure"),
+}
+ETA = np.linspace(0.0, 1.0, 31)
+constant = bg.Distribution.constant
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return bg.read("iea15mw")
+
+
+def there_and_back(definition, version):
+    """The structure that a version keeps, its document, and what is said of it."""
+    write, take, key = VERSIONS[version]
+    said, notes = [], Notes()
+    inside, materials = write(definition, lambda *words: said.append(": ".join(words)))
+    document = {"components": {"blade": {key: inside}}, "materials": materials}
+    again = take(Node(document, "", notes))
+    assert not notes.problems
+    assert not notes.findings
+    return again, inside, said
+
+
+def rules(structure):
+    """A structure without the fractions that stand besides its rules."""
+    bare = {"stated": (None, None)}
+    return replace(
+        structure,
+        webs=tuple(replace(web, **bare) for web in structure.webs),
+        layers=tuple(replace(layer, **bare) for layer in structure.layers),
+    )
+
+
+def laid(definition, structure):
+    return bg.Blade.from_definition(
+        replace(definition, structure=structure), landmarks=201
+    ).layup.at(ETA)
+
+
+@pytest.mark.parametrize("version", WAYS)
+def test_every_rule_comes_back_as_it_was(plain, version):
+    structure, _ = read(version, WAYS[version])
+    structure = replace(structure, webs=tuple(_straight(web) for web in structure.webs))
+    again, _, said = there_and_back(replace(plain, structure=structure), version)
+    assert said == []
+    assert rules(again) == rules(structure)
+
+
+def _straight(web):
+    """A web whose planes have a form in either version: the root's, turned by nothing over span."""
+    if isinstance(web.start, Arc):
+        return web
+    one, other = (
+        PlaneCut(side, web.start.offset, through=web.start.through)
+        for side in ("suction", "pressure")
+    )
+    return replace(web, start=one, end=other)
+
+
+@pytest.mark.parametrize("version", WAYS)
+def test_fractions_besides_the_rules_are_those_of_the_blade(plain, version):
+    structure, _ = read(2, WAYS[2])
+    definition = replace(plain, structure=structure)
+    again, _, _ = there_and_back(definition, version)
+    own = laid(definition, structure)
+    for i, layer in enumerate(again.layers):
+        for end, stated in enumerate(layer.stated):
+            if stated is not None:
+                grid, inside = stated.grid, np.isfinite(own.arcs[i, :, end])
+                held = inside & (grid[0] <= ETA) & (grid[-1] >= ETA)
+                fractions = np.clip(own.arcs[i, held, end], 0.0, 1.0)
+                assert_allclose(stated(ETA[held]), fractions, atol=5e-3, err_msg=layer.name)
+
+
+def test_one_version_says_the_same_as_the_other(plain):
+    structure, _ = read(1, WAYS[1])
+    structure = replace(structure, webs=tuple(_straight(web) for web in structure.webs))
+    two, _, said = there_and_back(replace(plain, structure=structure), 2)
+    assert said == []
+    one, _, said = there_and_back(replace(plain, structure=two), 1)
+    assert said == []
+    first, second, third = (laid(plain, known) for known in (structure, two, one))
+    for other in (second, third):
+        assert_allclose(other.arcs, first.arcs, atol=1e-9)
+        assert_allclose(other.mass_per_length, first.mass_per_length, rtol=1e-9)
+
+
+def test_a_rule_without_a_form_is_written_as_fractions_and_said(plain):
+    twisting = bg.Distribution([0.0, 1.0], [0.0, 0.2])
+    cut = PlaneCut("suction", constant(0.1), twisting, "chord")
+    ends = Shifted(cut, constant(0.4), -0.5), Shifted(cut, constant(0.4), 0.5)
+    foam = bg.Material("foam", 100.0)
+    structure = bg.Structure((foam,), (), (bg.Layer("cap", "foam", constant(0.1), *ends),))
+    again, inside, said = there_and_back(replace(plain, structure=structure), 2)
+    assert said == [
+        f"structure: cap.{key}: has no rule in windIO 2; written as fractions of the arc on this "
+        "blade"
+        for key in ("start_nd_arc", "end_nd_arc")
+    ]
+    assert "width" not in inside["anchors"][-1]
+    before, after = laid(plain, structure), laid(plain, again)
+    assert_allclose(after.arcs, before.arcs, atol=3e-3)
+    assert there_and_back(replace(plain, structure=structure), 1)[2] == []
+
+
+def test_a_variant_s_file_holds_the_rules_and_their_places_on_it(plain, tmp_path):
+    structure, _ = read(2, WAYS[2])
+    blade = bg.Blade.from_definition(replace(plain, structure=structure), landmarks=201)
+    variant = blade.perturbed(chord_scale=1.1)
+    bg.write(variant, tmp_path / "variant.yaml", polars="keep")
+    again = bg.read(tmp_path / "variant.yaml")
+    assert rules(again.structure) == rules(structure)
+    own, back = variant.layup, bg.Blade.from_definition(again, landmarks=201).layup
+    assert_allclose(back.at(ETA).arcs, own.at(ETA).arcs, atol=1e-3)
+    assert_allclose(back.mass, own.mass, rtol=1e-4)
+    cap = again.structure.layers[1].stated[0]
+    assert_allclose(cap(0.5), own.at(0.5).arcs[1, 0], atol=5e-3)
+
+
+def test_what_a_material_costs_goes_along(plain):
+    ends = {"start_nd_arc": {"grid": [0, 1], "values": [0, 0]}}
+    ends["end_nd_arc"] = {"grid": [0, 1], "values": [1, 1]}
+    skin = {"name": "skin", "material": "foam", "thickness": {"grid": [0, 1], "values": [0.01] * 2}}
+    foam = {"name": "foam", "rho": 100.0, "orth": 0, "E": 1e8, "nu": 0.3, "ply_t": 0.001}
+    foam |= {"unit_cost": 7.2, "waste": 0.25, "source": "a report", "alpha": [1e-5, 1e-5, 2e-5]}
+    structure, _ = read(1, {"layers": [skin | ends]}, [foam])
+    for write in (writing1.document, writing2.document):
+        _, materials = write(replace(plain, structure=structure), lambda *_: None)
+        assert materials == [foam]
+
+
+def test_a_format_without_a_place_for_it_says_so(plain, tmp_path):
+    structure, _ = read(1, WAYS[1])
+    said = bg.write(replace(plain, structure=structure), tmp_path / "blade.csv")
+    assert any(str(one).startswith("structure: has no place in") for one in said)

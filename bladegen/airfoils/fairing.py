@@ -7,7 +7,8 @@ show in the contour, but in its curvature.  Points (m, 2) in chords are moved to
 
 where D3 are third divided differences in chord length t, so that curvature varies as little as it
 can.  A point's bound is a few times the scatter of the points around it, the tolerance at most:
-points that lie on a smooth curve already, to their last digit, stay.
+points that lie on a smooth curve already, to their last digit, stay.  No nose is made concave, and
+none that is so more concave: moves that did are halved.
 """
 
 import numpy as np
@@ -25,6 +26,10 @@ FACTOR = 3.0  # of the scatter's median: a rounding error is at most 2.4 times i
 HELD = 1e-14  # chord; the bound of points that do not scatter, and of the ends
 ITERATIONS = 40  # of the weights; bounds are met to a few per cent after 20
 WITHIN = 1.0 - 1e-9  # of the tolerance, so that rounding does not pass it
+NOSE = 0.02  # chords, from the point farthest from the trailing edge on
+FINE = 16  # places between points at which a nose is looked at
+HALVINGS = 6  # of all moves, until they dent no nose; else points stay
+LEVEL = 1e-9  # rad; turns that are rounding
 SOFTEST = 1e-13  # of the stiffness; lesser weights leave the equations singular
 
 
@@ -75,8 +80,27 @@ def fair(points: Array, tolerance: float = TOLERANCE) -> Array:
         weight = np.maximum(weight * np.minimum(np.maximum(share, 0.1), 10.0), softest)
         weight[0] = weight[-1] = 1e6 * weight.max()
     moved[:, [0, -1]] = 0.0
-    share = np.hypot(moved[0], moved[1]) / bound
-    return np.asarray(points + moved.T / max(1.0, float(share.max())))
+    moves = moved.T / max(1.0, float((np.hypot(moved[0], moved[1]) / bound).max()))
+    dent = _dent(points)
+    for _ in range(HALVINGS):
+        if _dent(points + moves) <= dent + LEVEL:
+            return np.asarray(points + moves)
+        moves *= 0.5
+    return points
+
+
+def _dent(points: Array) -> float:
+    """Return by what angle the spline through points turns back at its nose [rad]."""
+    from scipy.interpolate import CubicSpline
+
+    t = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    nose = points[np.argmax(np.hypot(*(points - 0.5 * (points[0] + points[-1])).T))]
+    near = np.flatnonzero(np.hypot(*(points - nose).T) < NOSE)
+    cells = np.arange(max(near[0] - 1, 0), min(near[-1] + 1, len(t) - 1))
+    at = (t[cells, None] + np.diff(t)[cells, None] * np.arange(FINE) / FINE).reshape(-1)
+    x, y = CubicSpline(t, points)(at, 1).T
+    turns = np.arctan2(x[:-1] * y[1:] - y[:-1] * x[1:], x[:-1] * x[1:] + y[:-1] * y[1:])
+    return -float(np.minimum(turns, 0.0).sum())
 
 
 def _scatter(t: Array, points: Array) -> Array:

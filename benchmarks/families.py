@@ -177,7 +177,7 @@ def write_steps(
     """Print what STEP files of variants take; the baseline's is made first, and not counted."""
     products = Products(blade, Options())
     exporters.write(products, target)
-    spans = fitting.fitted(blade, products.options.tolerance)[0].v
+    spans = fitting.fitted(blade, products.options.tolerance)[0].spans
     options = Options(spans=spans)
     clock, processor, off, missed = [], [], [], 0
     with threadpool_limits(1):  # as a family's processes do

@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
+from scipy.interpolate import make_interp_spline
 
 from bladegen.definition.blade_definition import (
     Airfoil,
@@ -17,6 +18,7 @@ from bladegen.definition.blade_definition import (
 from bladegen.formats.reading import read
 from bladegen.shapes import grassmann
 from bladegen.support.arrays import Array, readonly
+from bladegen.surface.net import SurfaceNet
 
 STEADY = settings.default.max_examples < 20  # `make test`, as opposed to `make test-all`
 SEEDS = st.integers(0, 2**32 - 1)
@@ -111,6 +113,13 @@ def circle(count: int = 101) -> Array:
 def ellipse(thickness: float, count: int = 201) -> Array:
     """(count, 2) points on an ellipse of unit chord, closed."""
     return circle(count) * [1.0, thickness]
+
+
+def net_through(sections: Array, u: Array, v: Array) -> SurfaceNet:
+    """The bicubic C2 net through sections (k, n, 3)."""
+    across = make_interp_spline(u, sections, axis=1)
+    along = make_interp_spline(v, np.moveaxis(across.c, 0, 1), axis=0)
+    return SurfaceNet(np.moveaxis(along.c, 0, 1), across.t, along.t)
 
 
 def box(count: int, higher: Array) -> Array:

@@ -92,8 +92,7 @@ def test_grids_are_measured_in_the_report(tmp_path):
 
 def test_a_missed_tolerance_is_said_and_the_rest_is_made(tmp_path, monkeypatch):
     blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
-    monkeypatch.setattr("bladegen.surface.fitting.MAX_SECTIONS", 20)
-    monkeypatch.setattr("bladegen.surface.fitting.FIRST_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.fitting.MAX_POLES", 1000)
     with pytest.raises(ToleranceError):
         build(blade, tmp_path, formats=["step", "stl"], options=Options(tolerance=1e-5))
     names = {path.name for path in tmp_path.iterdir()}

@@ -88,8 +88,7 @@ def test_build_makes_grids_as_asked_for(tmp_path):
 
 
 def test_build_that_misses_its_tolerance_ends_with_1(tmp_path, monkeypatch):
-    monkeypatch.setattr("bladegen.surface.fitting.MAX_SECTIONS", 20)
-    monkeypatch.setattr("bladegen.surface.fitting.FIRST_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.fitting.MAX_POLES", 1000)
     result = run(
         "build", "nrel5mw", "-o", tmp_path, "--format", "step", "--tolerance", "0.001mm",
         "--landmarks", 101,

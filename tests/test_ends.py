@@ -12,8 +12,9 @@ from bladegen.blade.edges import Sharp
 from bladegen.cad import solids
 from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
-from bladegen.surface import deviation, ends, fitting, net
+from bladegen.surface import deviation, ends, fitting
 from bladegen.surface.tips import flat_tip, on_arcs, round_tip
+from strategies import net_through
 
 BLADE = Blade.from_definition(read("dtu10mw"), landmarks=101)
 NET, DEVIATION = fitting.fitted(BLADE, 1e-3)
@@ -90,7 +91,7 @@ def drop(lean, edge):
     u, v = landmark_parameters(41), np.linspace(0.0, 1.0, 5)
     s = 2.0 * u - 1.0
     flat = np.stack([s**2, s - (1.0 - edge) * s**3, 0.0 * s], axis=-1)
-    return net.fit(flat + 2.0 * v[:, None, None] * np.array([lean, 0.0, 1.0]), u, v)
+    return net_through(flat + 2.0 * v[:, None, None] * np.array([lean, 0.0, 1.0]), u, v)
 
 
 def twisted(*sides):

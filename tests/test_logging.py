@@ -49,7 +49,7 @@ def test_every_file_is_said_with_its_bytes(blade, messages, tmp_path):
     assert sizes == files
     (solid,) = (said for said in messages() if "sections" in said and "wrote" not in said)
     off = report["solid"]["deviation_mm"]
-    assert solid.startswith("nrel5mw: 20 sections of 51 landmarks, ")
+    assert solid.startswith(f"nrel5mw: 20 sections, {report['solid']['poles']} poles, ")
     assert f"off the blade by {off['maximum']:.4f} mm at most ({off['on_face']}, " in solid
     stages = {said.rsplit(": ", 1)[0] for said in messages(logging.DEBUG) if said.endswith(" s")}
     assert stages == set(report["seconds"])

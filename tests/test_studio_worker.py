@@ -60,8 +60,7 @@ def test_a_format_of_several_files_comes_as_one_archive(tmp_path, monkeypatch):
 
 
 def test_a_missed_tolerance_is_a_remark(tmp_path, monkeypatch):
-    monkeypatch.setattr("bladegen.surface.fitting.MAX_SECTIONS", 20)
-    monkeypatch.setattr("bladegen.surface.fitting.FIRST_SECTIONS", 20)
+    monkeypatch.setattr("bladegen.surface.fitting.MAX_POLES", 1000)
     made = make(Job("nrel5mw", MOVED, ".step", str(tmp_path)))
     assert made.path.endswith("nrel5mw-variant.out-of-tolerance.step")
     assert "off the blade" in made.remark

@@ -100,7 +100,7 @@ class Blade:
     stations = outputs.stations
     volume, _repr_html_ = cached_property(outputs.volume), outputs.html
     layup = cached_property(outputs.layup)
-    _crowding = cached_property(outputs.crowding)
+    _crowding, breaks = cached_property(outputs.crowding), cached_property(outputs.breaks)
 
     @classmethod
     def from_definition(

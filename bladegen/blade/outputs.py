@@ -23,7 +23,18 @@ from bladegen.support.services import service, shown_by
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
-__all__ = ["crowding", "export", "html", "layup", "mesh", "plot", "point", "stations", "volume"]
+__all__ = [
+    "breaks",
+    "crowding",
+    "export",
+    "html",
+    "layup",
+    "mesh",
+    "plot",
+    "point",
+    "stations",
+    "volume",
+]
 
 Tip = Callable[..., Any]
 
@@ -120,6 +131,30 @@ def export(blade: Any, path: str | Path, **options: Any) -> Path:
     """
     written: Path = service("export")(blade, path, **options)
     return written
+
+
+def breaks(blade: Any) -> Array:
+    """Span fractions at which the surface may turn or bend abruptly, increasing, 0 and 1 with them.
+
+    They are the stations and the grid points of all distributions: chord, twist, offsets, axis,
+    thickness and the coordinates of deformations.
+    """
+    definition = blade.definition
+    axis = definition.axis
+    given = (
+        definition.chord,
+        definition.twist,
+        definition.section_offset_x,
+        definition.section_offset_y,
+        definition.pitch_axis,
+        definition.relative_thickness,
+        axis.x,
+        axis.y,
+        axis.z,
+        *(deformation.t for deformation in blade.deformations),
+    )
+    grids = [quantity.grid for quantity in given if quantity is not None]
+    return np.unique(np.clip(np.concatenate([[0.0, 1.0], blade.eta, *grids]), 0.0, 1.0))
 
 
 def volume(blade: Any) -> float:

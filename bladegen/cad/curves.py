@@ -17,8 +17,9 @@ from bladegen.cad.shapes import MILLIMETRES
 from bladegen.cad.solids import Solid
 from bladegen.cad.step_documents import Part, Place
 from bladegen.support.arrays import Array
-from bladegen.surface.net import CLOSED_EDGE, DEGREE, SurfaceNet
+from bladegen.surface.net import CLOSED_EDGE, SurfaceNet
 from bladegen.surface.regions import COLOURS, EDGE, ROOT, SUCTION, TIP
+from bladegen.surface.splines import DEGREE
 
 __all__ = ["curves", "write_curves"]
 

@@ -21,7 +21,7 @@ from bladegen.cad.step_documents import Part
 from bladegen.errors import CadError, visible
 from bladegen.support.arrays import Array
 from bladegen.surface.deviation import Deviation
-from bladegen.surface.ends import edge_poles, measured, rounded, tip_volume
+from bladegen.surface.ends import edge_poles, rounded, tip_volume
 from bladegen.surface.fitting import fitted
 from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet
 from bladegen.surface.regions import EDGE, ROOT, TIP, TIP_EDGE, colour
@@ -30,6 +30,7 @@ from bladegen.surface.tips import Tip, flat_tip
 __all__ = ["DEFAULT_TOLERANCE", "Solid", "solid"]
 
 logger = logging.getLogger(__name__)
+DIGITS = 6  # of a pole's coordinates in mm: nanometres; more would only make files larger
 SEWING = 1e-4  # mm; edges of one net meet to rounding, so this is slack, not repair
 DEFAULT_TOLERANCE = 0.3e-3  # m
 
@@ -109,7 +110,7 @@ def solid(
     sections : int, optional
         Use exactly so many sections instead.
     spans : (k,) array, optional
-        Sections to begin with (`fitting.fitted`).
+        Knots along the span to begin with (`fitting.fitted`).
     tip : callable
         `tips.flat_tip` or `tips.round_tip`.
     split : bool
@@ -123,14 +124,14 @@ def solid(
     CadError
         If the result is not one valid closed solid.
     """
-    net, deviation = fitted(blade, tolerance, sections=sections, spans=spans, progress=progress)
-    deviation = Deviation.of([*deviation.parts, *measured(net, blade, tip)])
+    net, deviation = fitted(
+        blade, tolerance, sections=sections, spans=spans, tip=tip, progress=progress
+    )
     logger.info(
-        "%s: %d sections of %d landmarks, off the blade by %.4f mm at most (%s, eta = %.4f), "
-        "%.5f mm RMS",
+        "%s: %d sections, %d poles, off the blade by %.4f mm at most (%s, eta = %.4f), %.5f mm RMS",
         blade.name,
         len(net.v),
-        len(net.u),
+        net.poles.size // 3,
         deviation.maximum * MILLIMETRES,
         deviation.face,
         deviation.eta,
@@ -144,7 +145,9 @@ def solid(
             "it a minimum thickness or make it sharp everywhere"
         )
     progress("building the solid")
-    scaled = replace(net, poles=net.poles * MILLIMETRES)
+    poles = net.poles * MILLIMETRES
+    poles[:, 1:-1] = np.round(poles[:, 1:-1], DIGITS)  # root and tip stay in their planes
+    scaled = replace(net, poles=poles)
     faces = _faces(scaled, blade.sides, blunt, tip, split)
     shape, named = _closed(faces, blade.name)
     return Solid(shape, named, net, deviation, tip_volume(net, tip), blade.name)
@@ -154,13 +157,15 @@ def _faces(
     net: SurfaceNet, sides: tuple[str, str], blunt: bool, tip: Tip, split: bool
 ) -> list[tuple[str, Any]]:
     """Make the faces of a solid by name, in pieces if it is to be split."""
-    suction, pressure = net.halves()
-    u = pieces.cuts(suction.u_knots, pieces.AROUND) if split else np.zeros(0)
-    v = pieces.cuts(net.v_knots, pieces.ALONG) if split else np.zeros(0)
-    cut = [
-        pieces.cut(Patch(half.poles, half.u_knots, half.v_knots), at, v)
-        for half, at in ((suction, u), (pressure, pieces.mirrored(u)))
-    ]
+    none = np.zeros(0)
+    suction, pressure = (Patch(h.poles, h.u_knots, h.v_knots) for h in net.halves())
+    more_u = pieces.shorter(suction.u_knots, pieces.LONGEST_AROUND) if split else none
+    more_v = pieces.shorter(net.v_knots, pieces.LONGEST_ALONG) if split else none
+    suction = pieces.with_knots(suction, more_u, more_v)
+    pressure = pieces.with_knots(pressure, pieces.mirrored(more_u), more_v)
+    u = pieces.cuts(suction.u_knots, pieces.AROUND) if split else none
+    v = pieces.cuts(suction.v_knots, pieces.ALONG) if split else none
+    cut = [pieces.cut(suction, u, v), pieces.cut(pressure, pieces.mirrored(u), v)]
     faces = [
         face
         for name, rows in zip(sides, cut, strict=True)
@@ -170,7 +175,7 @@ def _faces(
     ]
     if blunt:
         strip = Patch(np.stack([net.poles[-1], net.poles[0]]), _LINEAR, net.v_knots)
-        rows = pieces.cut(strip, np.zeros(0), v)
+        rows = pieces.cut(pieces.with_knots(strip, none, more_v), none, v)
         faces += _numbered(EDGE, [shaping.face(shaping.surface(*row[0])) for row in rows])
     faces.append((ROOT, _cap([p for rows in cut for p in rows[0]], 0, blunt)))
     poles = rounded(net, tip)
@@ -178,7 +183,8 @@ def _faces(
         faces.append((TIP, _cap([p for rows in cut for p in rows[-1]], -1, blunt)))
         return faces
     # OCCT's quadrature takes as many points along u as v has knot spans: v goes to the nose
-    across = pieces.cut(Patch(poles.swapaxes(0, 1), BEZIER, suction.u_knots), np.zeros(0), u)
+    own = Patch(poles.swapaxes(0, 1), BEZIER, net.halves()[0].u_knots)
+    across = pieces.cut(pieces.with_knots(own, none, more_u), none, u)
     faces += _numbered(TIP, [shaping.face(shaping.surface(*row[0])) for row in across])
     if blunt:
         edge = shaping.surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)

@@ -7,7 +7,10 @@ name.
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from bladegen.blade.blade import Blade
+from bladegen.blade.spans import both_sides
 from bladegen.errors import ExportError, MissingLibraryError, SizeError, ToleranceError
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.products import Products
@@ -16,6 +19,7 @@ from bladegen.support.arguments import instance, path_of
 from bladegen.support.arrays import Array
 from bladegen.support.files import replacing
 from bladegen.support.threads import one_thread
+from bladegen.surface.deviation import Deviation
 from bladegen.surface.grids import grid
 from bladegen.surface.tips import Tip, flat_tip
 
@@ -149,8 +153,9 @@ def _write(products: Products, path: Path) -> None:
             target = aside(path)
             miss = ToleranceError(
                 f"{path}: the solid is {solid.deviation.maximum * 1e3:.3f} mm off the blade at "
-                f"eta = {solid.deviation.eta:.4f}, allowed is {tolerance * 1e3:g} mm; kept as "
-                f"{target.name}; more landmarks than {len(products.blade.u)} may help",
+                f"{_place(products.blade, solid.deviation)}, allowed is {tolerance * 1e3:g} mm; "
+                f"kept as {target.name}; a larger tolerance or, where airfoils are noisy, more "
+                "fairing may help",
                 target,
             )
     suffix = suffix_of(path)
@@ -167,6 +172,13 @@ def _write(products: Products, path: Path) -> None:
         raise miss
     if row.kind is Kind.solid:
         require_size(products, target)
+
+
+def _place(blade: Blade, deviation: Deviation) -> str:
+    """Say where on a blade a deviation is largest."""
+    u, at = both_sides(np.array([deviation.u]))
+    x = float(blade.profiles(np.array([deviation.eta]), u)[0, at[0], 0])
+    return f"eta = {deviation.eta:.4f}, {100.0 * x:.1f} % of the chord, on the {deviation.face}"
 
 
 def require_size(products: Products, path: Path) -> None:

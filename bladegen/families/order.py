@@ -81,7 +81,7 @@ class Order:
     @cached_property
     def spans(self) -> Array:
         """The sections of the baseline's solid, for the variants' solids to begin with."""
-        return fitted(self.family.blade, self.options.tolerance)[0].v
+        return fitted(self.family.blade, self.options.tolerance)[0].spans
 
     def blocks(self) -> list[int]:
         """Return the numbers of the blocks that are still to be made."""

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.measures.patches import Patch
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.ends import edge_poles, rounded
-from bladegen.surface.fitting import resolving_landmarks
+from bladegen.surface.fitting import resolving
 from bladegen.surface.mesh import TriangleMesh
-from bladegen.surface.net import BEZIER, CLOSED_EDGE, DEGREE, SurfaceNet
+from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet, on_knots
+from bladegen.surface.splines import DEGREE, Knots
 from bladegen.surface.tips import Tip, flat_tip
 
 __all__ = ["Surface", "of_blade", "of_faces", "of_mesh"]
@@ -27,7 +27,6 @@ __all__ = ["Surface", "of_blade", "of_faces", "of_mesh"]
 STATIONS = 240  # of a blade, besides the grids of its definition
 CLOSE = 1e-5  # m, what splines through the landmarks may miss between them
 NEAREST_KNOTS = 1e-7  # of the span
-STEP = 1e-6  # of the span: slopes by differences are then good to 1e-6
 LEAST, MOST = 12, 400  # rows of triangles on a patch
 FEW = 8  # patches that may have so many
 SAG = 4e-4  # m, of triangles to their patch aimed at
@@ -132,45 +131,11 @@ def _net(blade: Blade) -> SurfaceNet:
 
     A blade may be creased at the grids of its definition, so that no smooth spline will do.
     """
-    from scipy.interpolate import make_interp_spline
-
-    v = np.unique(np.concatenate([_grids(blade.definition), blade.stations(STATIONS), blade.eta]))
+    v = np.unique(np.concatenate([blade.breaks, blade.stations(STATIONS)]))
     v = v[np.concatenate([[True], np.diff(v) > NEAREST_KNOTS])]
     v[-1] = 1.0
-    u = resolving_landmarks(blade, blade.stations(max(60, len(blade.eta) + 2)), CLOSE)[0]
-    here = blade.sections(v, u)
-    before = (here - blade.sections(np.clip(v - STEP, 0.0, 1.0), u))[1:] / STEP
-    behind = (blade.sections(np.clip(v + STEP, 0.0, 1.0), u) - here)[:-1] / STEP
-    third = np.diff(v)[:, None, None] / 3.0
-    rows = np.empty((DEGREE * len(v) - DEGREE + 1, *here.shape[1:]))
-    rows[::DEGREE] = here
-    rows[1::DEGREE] = here[:-1] + third * behind
-    rows[2::DEGREE] = here[1:] - third * before
-    across = make_interp_spline(u, rows, DEGREE, axis=1)
-    knots = np.concatenate([v[:1], np.repeat(v, DEGREE), v[-1:]])
-    return SurfaceNet(across.c, across.t, knots, u, v)
-
-
-def _grids(definition: BladeDefinition) -> Array:
-    """Return the spans at which a definition's splines have knots."""
-    axis = definition.axis
-    found = [
-        quantity.grid
-        for quantity in (
-            definition.chord,
-            definition.twist,
-            definition.section_offset_x,
-            definition.section_offset_y,
-            definition.pitch_axis,
-            definition.relative_thickness,
-            axis.x,
-            axis.y,
-            axis.z,
-        )
-        if quantity is not None
-    ]
-    grids: Array = np.clip(np.concatenate([[0.0, 1.0], *found]), 0.0, 1.0)
-    return grids
+    u = resolving(blade, blade.stations(max(60, len(blade.eta) + 2)), CLOSE)
+    return on_knots(blade, u, Knots(v, np.full(len(v), DEGREE)))
 
 
 def _flat(net: SurfaceNet, v: float) -> tuple[Patch, _Triangles]:

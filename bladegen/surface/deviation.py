@@ -10,11 +10,15 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.support.arrays import Array
-from bladegen.surface.net import CLOSED_EDGE, ENDS, SurfaceNet
+from bladegen.surface.net import CLOSED_EDGE, ENDS, SurfaceNet, along_sections
+from bladegen.surface.splines import Fit, Knots, basis
 
-__all__ = ["BETWEEN", "Deviation", "Offsets", "deviation"]
+__all__ = ["Deviation", "Measured", "Offsets", "deviation", "measured", "watched"]
 
-BETWEEN = np.array([0.25, 0.5, 0.75])  # of the way between landmarks, where a net is measured
+PLACES = 800  # along the chord at least, and
+BETWEEN = 4  # from knot to knot
+SPANS = np.array([[0.2, 0.4, 0.62], [0.38, 0.6, 0.8]])  # and along the span, in turn
+CHUNK = 100_000  # points at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,24 +82,84 @@ class Deviation:
         return {part.face: Deviation.of((part,)) for part in self.parts if len(part.distances)}
 
 
-def deviation(net: SurfaceNet, blade: Blade) -> Deviation:
-    """Measure a net against its blade, at three places between landmarks and off its sections.
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """How far a blade's sections lie from a net between its knots.
 
-    The end sections' rims are measured too, and the strip between the trailing edges.
+    Parameters
+    ----------
+    v, u : (kv,), (ku,) arrays
+        Spans and landmark parameters.
+    offsets : (kv, ku) array
+        Distances along the surface's normal [m], signed.
+    across : (kv, ku) array
+        What would be left of them if the net passed through each of these sections as well as
+        its knots along the chord allow.
+    parts : tuple of Offsets
+        The same face by face, with the strip between the trailing edges.
+    volume : float
+        What lies between net and blade, over the blade's volume, signed: about.
     """
-    starts, widths = net.v[:-1], np.diff(net.v)
-    v = np.sort(np.concatenate([starts + widths / 3.0, starts + 0.75 * widths, net.v[[0, -1]]]))
-    u = np.concatenate([[0.0], *(net.u[:-1] + share * np.diff(net.u) for share in BETWEEN), [1.0]])
-    u = np.sort(u)
-    points = blade.sections(v, u)
-    offsets = np.abs(net.offsets(points, u, v))
+
+    v: Array
+    u: Array
+    offsets: Array
+    across: Array
+    parts: tuple[Offsets, ...]
+    volume: float
+
+
+def deviation(net: SurfaceNet, blade: Blade) -> Deviation:
+    """Return the deviation of a net's sides, and of the strip between them, from its blade."""
+    return Deviation.of(measured(net, blade).parts)
+
+
+def measured(net: SurfaceNet, blade: Blade) -> Measured:
+    """Measure a net against its blade.
+
+    That is between its sections and at creases and ends, at other places along the chord than
+    those that it was fitted to, the blade's landmarks among them; and the strip between the
+    trailing edges.
+    """
+    starts, widths = net.v[:-1, None], np.diff(net.v)[:, None]
+    within = starts + widths * SPANS[np.arange(len(widths)) % len(SPANS)]
+    v = np.unique(np.concatenate([within.ravel(), net.creases, net.v[[0, -1]]]))
+    knots = Knots.simple(net.u)
+    u = watched(knots, blade)
+    fit, bend, offsets, across, ends = Fit(knots, u), basis(net.u_knots, u, 1), [], [], []
+    weights, volumes = np.gradient(v), []
+    for some in np.array_split(v, -(-len(v) * len(u) // CHUNK)):
+        points, along = blade.sections(some, u), basis(net.v_knots, some)
+        flux = np.cross(
+            net.combined(bend, along), net.combined(fit.matrix, basis(net.v_knots, some, 1))
+        )
+        area = np.linalg.norm(flux, axis=-1)
+        normal = flux / area[..., None]
+        offsets.append(np.sum((points - net.combined(fit.matrix, along)) * normal, axis=-1))
+        cones = np.sum(points * flux, axis=-1) / 3.0
+        volumes.append(np.trapezoid(np.stack([area * offsets[-1], cones]), u))
+        left = points - along_sections(fit.matrix, fit(points))
+        across.append(np.sum(left * normal, axis=-1))
+        ends.append(points[:, [0, -1]])
+    found = np.concatenate(offsets)
     eta, places = np.broadcast_arrays(v[:, None], u)
-    front, back = u <= 0.5, u >= 0.5
     sides = [
-        Offsets(face, offsets[:, some].ravel(), eta[:, some].ravel(), places[:, some].ravel())
-        for face, some in zip(blade.sides, (front, back), strict=True)
+        Offsets(face, np.abs(found[:, some]).ravel(), eta[:, some].ravel(), places[:, some].ravel())
+        for face, some in zip(blade.sides, (u <= 0.5, u >= 0.5), strict=True)
     ]
-    return Deviation.of([*sides, _strip(net, points[:, [0, -1]], v)])
+    parts = *sides, _strip(net, np.concatenate(ends), v)
+    between, whole = np.concatenate(volumes, axis=1) @ weights
+    return Measured(v, u, found, np.concatenate(across), parts, float(between / whole))
+
+
+def watched(knots: Knots, blade: Blade) -> Array:
+    """Return places along the chord at which splines with some knots are measured.
+
+    The blade's landmarks are among them.
+    """
+    cells = len(knots.at) - 1
+    pieces = max(BETWEEN, -(-PLACES // cells))
+    return np.union1d(knots.inside(np.arange(pieces) / pieces), blade.u)
 
 
 def _strip(net: SurfaceNet, ends: Array, v: Array) -> Offsets:

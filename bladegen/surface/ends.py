@@ -10,7 +10,8 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.support.arrays import Array
 from bladegen.surface.deviation import Offsets
-from bladegen.surface.net import BEZIER, CLOSED_EDGE, DEGREE, SurfaceNet, cone_volume
+from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet, cone_volume
+from bladegen.surface.splines import DEGREE
 from bladegen.surface.tips import Tip, arcs, on_arcs
 
 __all__ = ["edge_poles", "measured", "rounded", "tip_volume"]

@@ -172,8 +172,13 @@ class Loft:
 
     def finer(self, joined: JoinedSections, eta: Array, u: Array) -> Array:
         """Return points (k, m, 2) at landmark parameters (m,) of the sections at spans (k,)."""
-        path, wedges = self.at(eta), joined.wedges
-        points = affine.restore(self.between(u) @ path[0], *path[1:])
+        (X, M, b), wedges = self.at(eta), joined.wedges
+        if self.contours is None:
+            points = affine.restore(SectionSplines(self.u).values(u) @ X, M, b)
+        else:
+            own, weights = self.between(u), (self._shares @ X) @ M
+            flat = own @ weights.transpose(1, 0, 2).reshape(own.shape[1], -1)
+            points = flat.reshape(len(u), len(eta), 2).swapaxes(0, 1) + b[:, None]
         return points if wedges is None else wedges.opened(points)[0]
 
     def ruling(self, eta: Array) -> Array | None:
@@ -182,17 +187,21 @@ class Loft:
         return None if thickness is None else thickness(eta)
 
     def between(self, u: Array) -> Array:
-        """Return the linear map (m, n) from a path's landmarks to its points at `u`.
+        """Return the stations' shapes at other landmark parameters (m,), side by side, (m, 2 s).
 
-        Paths run in the span of the stations' shapes, so a map that is right for these is
-        right for all that lies between them.
+        Paths run in the span of the stations' shapes: what makes a path's landmarks of theirs
+        (`_shares`) makes its points at `u` of these.
         """
-        if self.contours is None:
-            return SectionSplines(self.u).values(u)
-        airfoils = np.stack([contour.landmarks(u) for contour in self.contours])
+        airfoils = np.stack([contour.landmarks(u) for contour in self.contours or ()])
         finer = (airfoils - self.b[:, None]) @ np.linalg.inv(self.M)
+        return np.concatenate([*finer], axis=1)
+
+    @cached_property
+    def _shares(self) -> Array:
+        """The map from points of a path to their shares in the stations' shapes, (2 s, n)."""
         columns = np.concatenate([*self.representatives], axis=1)
-        return np.concatenate([*finer], axis=1) @ np.linalg.pinv(columns, rcond=SAME_SHAPE)
+        shares: Array = np.linalg.pinv(columns, rcond=SAME_SHAPE)
+        return shares
 
 
 def lofted(

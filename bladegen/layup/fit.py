@@ -129,12 +129,16 @@ def _stated(structure: Structure, laid: Laid, _: Array) -> Iterator[Finding]:
 
 
 def _off(stated: Stated, arcs: Array, eta: Array, there: Mask) -> Array:
-    """Return how far stated fractions are from those of the rules (k,), 0 where none are."""
+    """Return how far stated fractions are from those of the rules (k,), 0 where none are.
+
+    They are held against each other at the points of their own grid, not between.
+    """
     far = np.zeros(len(eta))
     for end, given in enumerate(stated):
         if given is not None:
             apart = np.abs(within(given, eta) - np.clip(arcs[:, end], 0.0, 1.0))
-            far = np.maximum(far, np.where(there, np.nan_to_num(apart), 0.0))
+            held = there & np.isin(eta, given.grid)
+            far = np.maximum(far, np.where(held, np.nan_to_num(apart), 0.0))
     return far
 
 

@@ -159,7 +159,9 @@ class Layup:
     def findings(self) -> tuple[Finding, ...]:
         """What does not fit on this blade's sections, and where."""
         blade = self.blade.mirror_image() if self.blade.mirrored else self.blade
-        eta = np.linspace(0.0, 1.0, LOOKED_AT)
+        placed: tuple[Web | Layer, ...] = (*self.structure.webs, *self.structure.layers)
+        stated = [given.grid for one in placed for given in one.stated if given is not None]
+        eta = united(np.linspace(0.0, 1.0, LOOKED_AT), *stated, apart=0.0)
         depth = blade.relative_thickness(eta) * blade.chord(eta)
         return doubts(self.structure, self.at(eta), depth)
 

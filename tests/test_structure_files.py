@@ -1,6 +1,7 @@
 """What lies inside the skin goes along: into windIO 1 and 2 and back, of variants too."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from test_structure import WAYS, read
 import bladegen as bg
 from bladegen.definition.structure.positions import Arc, PlaneCut, Shifted
 from bladegen.formats.common.document import Node, Notes
+from bladegen.formats.windio import version1
 from bladegen.formats.windio.structure import reading1, reading2, writing1, writing2
 
 VERSIONS = {
@@ -149,3 +151,32 @@ def test_a_format_without_a_place_for_it_says_so(plain, tmp_path):
     structure, _ = read(1, WAYS[1])
     said = bg.write(replace(plain, structure=structure), tmp_path / "blade.csv")
     assert any(str(one).startswith("structure: has no place in") for one in said)
+
+
+def test_the_converter_of_windio_makes_the_same_of_what_is_written(tmp_path):
+    """An oracle of windIO 1 and of the reading of windIO 2: the package's own way between them."""
+    converters = pytest.importorskip("windIO.converters.windIO2windIO")
+    home = Path(pytest.importorskip("windIO.examples.turbine").__file__).parent
+    definition = bg.read(home / "IEA-15-240-RWT.yaml")
+    document = version1.document(definition, lambda *_: None)
+    converter = converters.v1p0_to_v2p0("", str(tmp_path / "two.yaml"))
+    document = converter.convert_blade_reference_axis(document)
+    document = converter.convert_blade_structure(document)
+    notes = Notes()
+    again = reading2.read(Node(_plain(document), "", notes))
+    assert not notes.findings
+    first, second = (
+        bg.Blade.from_definition(replace(definition, structure=one), landmarks=201).layup
+        for one in (definition.structure, again)
+    )
+    assert_allclose(second.at(ETA).arcs, first.at(ETA).arcs, atol=1e-9)
+    assert_allclose(second.mass, first.mass, rtol=1e-6)
+
+
+def _plain(value):
+    """Numbers of NumPy and its lists as those of a document."""
+    if isinstance(value, dict):
+        return {key: _plain(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value

@@ -13,7 +13,7 @@ from bladegen.formats.windio.structure.written import (
     materials,
     strip_of,
 )
-from bladegen.formats.windio.writing import Document, Note, pairs
+from bladegen.formats.windio.writing import Document, Note, axis, pairs
 
 __all__ = ["document"]
 
@@ -53,7 +53,7 @@ def document(definition: BladeDefinition, note: Note) -> tuple[Document, list[Do
                 **extents(layer),
             }
         )
-    made: Document = {"webs": webs, "layers": layers}
+    made: Document = {"reference_axis": axis(definition), "webs": webs, "layers": layers}
     return made, materials(structure.materials)
 
 

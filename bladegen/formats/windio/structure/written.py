@@ -80,7 +80,8 @@ class Written:
         grid = np.linspace(low, high, POINTS)
         if given is not None:
             inside = given.grid[(given.grid >= low) & (given.grid <= high)]
-            grid = inside if len(inside) > POINTS // 2 else united(grid, inside)
+            few = [low, high] if len(inside) > POINTS // 2 else grid
+            grid = united(inside, few)
         values = np.clip(self._on(grid).places(place), 0.0, 1.0)
         held = np.isfinite(values)
         if held.sum() < 2:

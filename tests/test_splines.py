@@ -56,3 +56,17 @@ def test_a_fit_meets_both_ends_whatever_lies_between(count, seed):
     points = np.random.default_rng(seed).normal(size=(3, len(u), 3))
     fitted = Fit(knots, u)(points)
     assert_allclose(fitted[[0, -1]], points[:, [0, -1]].swapaxes(0, 1), atol=1e-14)
+
+
+@given(st.integers(0, 12), SEEDS)
+def test_a_fit_meets_the_nose_and_is_the_closest_that_does(count, seed):
+    rng = np.random.default_rng(seed)
+    half = np.sort(rng.uniform(0.01, 0.49, count))
+    knots = Knots.simple(np.concatenate([[0.0], half, [0.5], 1.0 - half[::-1], [1.0]]))
+    u = np.union1d(knots.inside(np.array([0.1, 0.4, 0.6, 0.9])), [0.5])
+    points, fit = rng.normal(size=(1, len(u), 3)), Fit(knots, u)
+    poles = fit(points)[:, 0]
+    pinned = fit.matrix[[0, np.flatnonzero(u == 0.5)[0], len(u) - 1]].toarray()
+    assert_allclose(pinned @ poles, points[0, [0, np.flatnonzero(u == 0.5)[0], -1]], atol=1e-10)
+    pull = fit.matrix.T @ (fit.matrix @ poles - points[0])  # balanced by what holds the three
+    assert_allclose(pinned.T @ np.linalg.lstsq(pinned.T, pull, rcond=None)[0], pull, atol=1e-9)

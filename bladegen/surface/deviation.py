@@ -18,6 +18,8 @@ __all__ = ["Deviation", "Measured", "Offsets", "deviation", "measured", "watched
 PLACES = 800  # along the chord at least, and
 BETWEEN = 4  # from knot to knot
 SPANS = np.array([[0.2, 0.4, 0.62], [0.38, 0.6, 0.8]])  # and along the span, in turn
+QUARTERS = np.linspace(0.0, 1.0, 5)
+STRIP = np.arange(8) / 8.0  # of the way between sections, where the strip between them is measured
 CHUNK = 100_000  # points at once
 
 
@@ -126,7 +128,7 @@ def measured(net: SurfaceNet, blade: Blade) -> Measured:
     v = np.unique(np.concatenate([within.ravel(), net.creases, net.v[[0, -1]]]))
     knots = Knots.simple(net.u)
     u = watched(knots, blade)
-    fit, bend, offsets, across, ends = Fit(knots, u), basis(net.u_knots, u, 1), [], [], []
+    fit, bend, offsets, across = Fit(knots, u), basis(net.u_knots, u, 1), [], []
     weights, volumes = np.gradient(v), []
     for some in np.array_split(v, -(-len(v) * len(u) // CHUNK)):
         points, along = blade.sections(some, u), basis(net.v_knots, some)
@@ -140,14 +142,15 @@ def measured(net: SurfaceNet, blade: Blade) -> Measured:
         volumes.append(np.trapezoid(np.stack([area * offsets[-1], cones]), u))
         left = points - along_sections(fit.matrix, fit(points))
         across.append(np.sum(left * normal, axis=-1))
-        ends.append(points[:, [0, -1]])
     found = np.concatenate(offsets)
     eta, places = np.broadcast_arrays(v[:, None], u)
     sides = [
         Offsets(face, np.abs(found[:, some]).ravel(), eta[:, some].ravel(), places[:, some].ravel())
         for face, some in zip(blade.sides, (u <= 0.5, u >= 0.5), strict=True)
     ]
-    parts = *sides, _strip(net, np.concatenate(ends), v)
+    dense = Knots.simple(net.v).inside(STRIP)
+    few = blade.sections(dense, QUARTERS)  # an edge is finished where its section has some room
+    parts = *sides, _strip(net, few[:, [0, -1]], dense)
     between, whole = np.concatenate(volumes, axis=1) @ weights
     return Measured(v, u, found, np.concatenate(across), parts, float(between / whole))
 

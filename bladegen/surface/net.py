@@ -15,7 +15,7 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.values import brief
-from bladegen.surface.splines import DEGREE, Fit, Knots, basis, joined
+from bladegen.surface.splines import DEGREE, NOSE, Fit, Knots, basis, joined
 
 __all__ = [
     "BEZIER",
@@ -181,7 +181,7 @@ def on_knots(blade: Blade, u: Knots, v: Knots) -> SurfaceNet:
         for at, by in zip((v.at[after], v.at[before]), steps, strict=True)
         for k in (1, 2)
     ]
-    places, spans = u.inside(FITTED), np.concatenate([v.at, *beside])
+    places, spans = np.union1d(u.inside(FITTED), [NOSE]), np.concatenate([v.at, *beside])
     rows = Fit(u, places)(blade.sections(spans, places))
     ends = np.cumsum([len(v.at), *(len(at) for at in beside[:-1])])
     here, *near = np.split(rows, ends, axis=1)

@@ -1,8 +1,8 @@
 """Cubic splines with knots of any multiplicity: fitted along a chord, joined along a span.
 
 A knot that stands once leaves a spline C2, twice C1, three times C0.  Along a section a spline is
-the least-squares fit to more points than it has poles, and meets both ends exactly; along the span
-it passes through all sections at its knots, with the blade's own slopes wherever it is not C2.
+the least-squares fit to more points than it has poles, and meets edges and nose exactly; along the
+span it passes through all sections at its knots, with the blade's own slopes where it is not C2.
 """
 
 from dataclasses import dataclass
@@ -17,6 +17,7 @@ from bladegen.support.values import brief
 __all__ = ["DEGREE", "Fit", "Knots", "basis", "joined"]
 
 DEGREE = 3
+NOSE = 0.5  # the landmark parameter of the leading edge
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +88,7 @@ def basis(knots: Array, x: Array, nu: int = 0) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Splines fitted to points at u, least squares, both ends exact.
+    """Splines fitted to points at u, least squares; both ends are exact, and the nose, u = 0.5.
 
     Parameters
     ----------
@@ -106,6 +107,16 @@ class Fit:
     def matrix(self) -> Any:
         """From poles to points."""
         return basis(self.knots.sequence, self.u)
+
+    @cached_property
+    def _nose(self) -> tuple[Array, Array]:
+        """The basis at the nose, and by how much poles move that one unit there is met."""
+        from scipy.linalg import cho_solve_banded
+
+        row = self.matrix[np.flatnonzero(self.u == NOSE)].toarray()
+        moved = cho_solve_banded((self._factors[1], True), np.ascontiguousarray(row[:, 1:-1].T))
+        moved = np.pad(moved, ((1, 1), (0, 0)))
+        return row, moved / (row @ moved)
 
     @cached_property
     def _factors(self) -> tuple[Any, Array, Array]:
@@ -128,7 +139,12 @@ class Fit:
         values = points.swapaxes(0, 1).reshape(m, -1)
         first_last = values[[0, -1]]
         poles = cho_solve_banded((factor, True), inner @ (values - ends @ first_last))
-        return np.concatenate([first_last[:1], poles, first_last[1:]]).reshape(-1, k, 3)
+        poles = np.concatenate([first_last[:1], poles, first_last[1:]])
+        nose = np.flatnonzero(self.u == NOSE)
+        if nose.size:
+            row, moved = self._nose
+            poles += moved @ (values[nose] - row @ poles)
+        return poles.reshape(-1, k, 3)
 
 
 def joined(knots: Knots, values: Array, behind: Array, ahead: Array) -> Array:

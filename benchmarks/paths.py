@@ -14,7 +14,8 @@ from figures import asked, figure
 from scipy.interpolate import PchipInterpolator, interp1d
 
 import bladegen as bg
-from bladegen.blade.lofting.paths import PATHS, Parameter, SectionSpline
+from bladegen.blade.lofting.parameters import Parameter
+from bladegen.blade.lofting.paths import PATHS
 from bladegen.measures.smoothness import creases
 from bladegen.shapes import affine
 
@@ -29,10 +30,8 @@ def predicted(blade, left, way, by_thickness):
     parameter = Parameter(blade.eta[keep], ruling)
     q = parameter(np.array([place]))
     if way in PATHS:
-        path, M = PATHS[way](parameter.knots, blade.representatives[keep], blade.M[keep])
-        X = path(q)
-        Mq, bq = SectionSpline(parameter.knots, M, blade.b[keep])(q)
-        points = affine.restore(X, Mq, bq)
+        path, M = PATHS[way](parameter, blade.representatives[keep], blade.M[keep])
+        points = affine.restore(path(q), *path.maps(M, blade.b[keep])(q))
     else:
         given = affine.restore(blade.representatives, blade.M, blade.b)[keep]
         make = interp1d if way == "linear blend" else PchipInterpolator

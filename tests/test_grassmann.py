@@ -220,3 +220,23 @@ def test_planes_of_more_than_two_dimensions():
     X = np.linalg.qr(rng.normal(size=(20, 3))).Q
     D = random_tangent(rng, X, 0.7)
     assert_allclose(gr.log(X, gr.exp(X, D)), D, atol=1e-12)
+
+
+@given(points(count=2), SEEDS)
+def test_the_rate_of_a_log_is_its_derivative(XY, seed):
+    X, Y = XY
+    E = random_tangent(np.random.default_rng(seed), Y, 1.0)
+    steps = [1e-3, 5e-4]  # Richardson's extrapolation of central differences
+    differences = [
+        (gr.log(X, gr.exp(Y, h * E)) - gr.log(X, gr.exp(Y, -h * E))) / (2 * h) for h in steps
+    ]
+    wanted = (4.0 * differences[1] - differences[0]) / 3.0
+    size = max(1.0, np.abs(wanted).max())
+    assert_allclose(gr.log_rate(X, Y, E) / size, wanted / size, atol=1e-7)
+
+
+@given(points(count=2), SEEDS)
+def test_the_rate_of_a_log_undoes_that_of_exp_at_its_start(XY, seed):
+    X, _ = XY
+    E = random_tangent(np.random.default_rng(seed), X, 1.0)
+    assert_allclose(gr.log_rate(X, X, E), E, atol=1e-12)

@@ -6,15 +6,11 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import Akima1DInterpolator
 
 from bladegen.airfoils.landmarks import landmarks
-from bladegen.blade.lofting.paths import (
-    NOISE,
-    GeodesicPath,
-    Parameter,
-    SectionSpline,
-    _slopes,
-    geodesic_path,
-    spline_path,
-)
+from bladegen.blade.lofting.geodesics import GeodesicPath, SectionSpline
+from bladegen.blade.lofting.parameters import Parameter
+from bladegen.blade.lofting.paths import geodesic_path, spline_path
+from bladegen.blade.lofting.splines import NOISE, SplinePath
+from bladegen.blade.lofting.velocities import EASED, SLOW, Easing, blended, three_point
 from bladegen.definition.blade_definition import Distribution
 from bladegen.shapes import affine, grassmann
 from strategies import SEEDS, circle, maps, naca, random_points, random_tangent
@@ -25,24 +21,25 @@ SHAPES = np.stack(
     + [landmarks(naca(0.2, 0.03, 0.003), 101)]
 )
 X, M, b = affine.standardise(SHAPES)
+SPAN = Parameter(KNOTS)
 MAKERS = pytest.mark.parametrize("maker", [geodesic_path, spline_path])
 
 
 @MAKERS
 def test_paths_pass_through_their_stations(maker):
-    path, maps_ = maker(KNOTS, X, M)
+    path, maps_ = maker(SPAN, X, M)
     assert_allclose(path(KNOTS) @ maps_, X @ M, atol=1e-12)
 
 
 @MAKERS
 def test_paths_stay_on_the_manifold(maker):
-    points = maker(KNOTS, X, M)[0](np.linspace(0, 1, 57))
+    points = maker(SPAN, X, M)[0](np.linspace(0, 1, 57))
     assert_allclose(points.mT @ points, np.broadcast_to(np.eye(2), (57, 2, 2)), atol=1e-12)
 
 
 @MAKERS
 def test_identical_neighbours_are_constant(maker):
-    path, _ = maker(KNOTS, X, M)
+    path, _ = maker(SPAN, X, M)
     for first, last in ((0.0, 0.2), (0.6, 1.0)):
         between = path(np.linspace(first, last, 11))
         assert_allclose(between, np.broadcast_to(between[:1], between.shape), atol=1e-13)
@@ -50,7 +47,7 @@ def test_identical_neighbours_are_constant(maker):
 
 @MAKERS
 def test_a_batch_equals_its_parts(maker):
-    path, _ = maker(KNOTS, X, M)
+    path, _ = maker(SPAN, X, M)
     q = np.linspace(0, 1, 23)
     assert_allclose(path(q), np.concatenate([path(q[i : i + 1]) for i in range(23)]), atol=1e-13)
 
@@ -62,7 +59,7 @@ def test_paths_do_not_depend_on_representatives(maker, seed):
     turns *= np.sign(np.linalg.det(turns))[:, None, None] * [[1.0, 1.0], [1.0, 1.0]]
     turns[:, :, 0] *= np.sign(np.linalg.det(turns))[:, None]
     q = np.linspace(0, 1, 9)
-    plain, turned = maker(KNOTS, X, M)[0](q), maker(KNOTS, X @ turns, turns.mT @ M)[0](q)
+    plain, turned = maker(SPAN, X, M)[0](q), maker(SPAN, X @ turns, turns.mT @ M)[0](q)
     assert_allclose(plain @ plain.mT, turned @ turned.mT, atol=1e-9)
 
 
@@ -79,7 +76,7 @@ def test_between_two_stations_the_path_is_the_geodesic(seed):
 
 
 def test_speed_along_the_geodesic_path_is_continuous():
-    path, _ = geodesic_path(KNOTS, X, M)
+    path, _ = geodesic_path(SPAN, X, M)
     h = 1e-6
     for knot in KNOTS[1:-1]:
         before, at, after = path(knot + np.array([-h, 0.0, h]))
@@ -88,7 +85,7 @@ def test_speed_along_the_geodesic_path_is_continuous():
 
 
 def test_the_spline_path_has_no_kink():
-    path, _ = spline_path(KNOTS, X, M)
+    path, _ = spline_path(SPAN, X, M)
     h = 1e-6
     for knot in KNOTS[1:-1]:
         before, at, after = path(knot + np.array([-h, 0.0, h]))
@@ -96,8 +93,8 @@ def test_the_spline_path_has_no_kink():
 
 
 def test_a_spline_path_of_two_stations_is_the_geodesic():
-    path, _ = spline_path(np.array([0.0, 1.0]), X[1:3], M[1:3])
-    geodesic, _ = geodesic_path(np.array([0.0, 1.0]), X[1:3], M[1:3])
+    path, _ = spline_path(Parameter(np.array([0.0, 1.0])), X[1:3], M[1:3])
+    geodesic, _ = geodesic_path(Parameter(np.array([0.0, 1.0])), X[1:3], M[1:3])
     q = np.linspace(0, 1, 7)
     assert np.max(grassmann.distance(path(q), geodesic(q))) < 1e-10
 
@@ -147,29 +144,115 @@ def test_ripples_of_the_thickness_do_no_harm():
 
 
 @given(st.integers(2, 9), SEEDS)
-def test_slopes_of_numbers_are_those_of_scipys_modified_akima(count, seed):
+def test_velocities_along_a_line_are_akimas_with_squared_weights(count, seed):
+    rng = np.random.default_rng(seed)
+    apart = rng.uniform(0.1, 1.0, count)
+    rates = rng.uniform(-1.0, 1.0, count)
+    direction = np.array([[0.6], [0.8]])
+    V = rates[:, None, None] * direction
+    found = np.sum(blended(apart, V, V, V[:-1], V[1:]) * direction, axis=(1, 2))
+    for k in range(2, count - 1):
+        bends = (rates[k - 1] - rates[k - 2]) ** 2, (rates[k + 1] - rates[k]) ** 2
+        wanted = (bends[1] * rates[k - 1] + bends[0] * rates[k]) / sum(bends)
+        assert found[k] == pytest.approx(wanted, abs=1e-12)
+    knots = np.append(0.0, np.cumsum(apart))
+    values = np.append(0.0, np.cumsum(rates * apart))
+    akima = Akima1DInterpolator(knots, values)(knots, 1)
+    if count > 1:  # beyond the ends both go on in the same way
+        for k in (0, -1):
+            assert found[k] == pytest.approx(akima[k], abs=1e-9)
+
+
+def test_where_nothing_moves_velocities_are_zero():
+    still = np.zeros((3, 5, 2))
+    assert_allclose(blended(np.ones(3), still, still, still[:-1], still[1:]), 0.0, atol=0)
+
+
+@given(st.integers(3, 9), SEEDS)
+def test_three_point_slopes_are_those_of_parabolas(count, seed):
     rng = np.random.default_rng(seed)
     knots = np.cumsum(rng.uniform(0.1, 1.0, count))
-    values = np.cumsum(rng.uniform(0.01, 1.0, count) * rng.choice([-1.0, 1.0], count))
-    V = values[:, None, None] * [[0.6], [0.8]]  # along one direction lengths are numbers
-    wanted = Akima1DInterpolator(knots, values, method="makima")(knots, 1)
-    assert_allclose(_slopes(knots, V), wanted[:, None, None] * [[0.6], [0.8]], atol=1e-10)
+    c = rng.normal(size=3)
+    slopes = three_point(np.diff(knots), np.polyval(c, knots))
+    assert_allclose(slopes, np.polyval(np.polyder(c), knots), atol=1e-9)
 
 
-def test_slopes_beside_neighbours_that_differ_by_noise_are_zero():
-    V = np.array([0.0, 1.0, 1.0 + 0.5 * NOISE, 3.0, 2.0])[:, None, None]
-    slopes = _slopes(np.arange(5.0), V)[:, 0, 0]
-    assert_allclose(slopes[1:3], 0.0, atol=0)
-    assert np.all(slopes[[0, 3, 4]] != 0)
+@given(st.lists(maps(), min_size=4, max_size=4), SEEDS)
+def test_maps_of_the_spline_path_never_become_singular(M, seed):
+    rng = np.random.default_rng(seed)
+    parameter = Parameter(np.concatenate([[0.0], np.cumsum(rng.uniform(1e-3, 1.0, 3))]))
+    path, maps_ = spline_path(parameter, X[1:], np.stack(M))
+    spline = path.maps(maps_, rng.normal(size=(4, 2)))
+    assert_allclose(spline(parameter.knots)[0], maps_, atol=1e-10)
+    q = np.linspace(parameter.knots[0], parameter.knots[-1], 301)
+    assert np.linalg.det(spline(q)[0]).min() > 0
 
 
-def test_where_all_secants_vanish_slopes_are_zero():
-    assert_allclose(_slopes(np.arange(4.0), np.ones((4, 3, 2))), 0.0, atol=0)
+@pytest.mark.parametrize(
+    "thickness", [(1.0, 1.0, 0.5, 0.3, 0.3), (1.0, 0.98, 0.5, 0.35, 0.2), (0.9, 1.0, 0.4, 0.4, 0.6)]
+)
+def test_over_span_sections_of_the_spline_path_have_no_corner(thickness):
+    grid = np.array([0.0, 0.02, 0.3, 0.5, 0.6, 1.0])  # not the stations': it moves at each of them
+    values = np.interp(grid, (0.0, 0.02, 0.3, 0.55, 1.0), thickness)
+    parameter = Parameter(np.array([0.0, 0.02, 0.3, 0.55, 1.0]), Distribution(grid, values))
+    path, maps_ = spline_path(parameter, X, M)
+    spline, h = path.maps(maps_, b), 1e-7
+
+    def sections(eta):
+        q = parameter(eta)
+        return affine.restore(path(q), *spline(q))
+
+    for station in parameter.stations[1:-1]:
+        beside = sections(station + h * np.array([-2.0, -1.0, 0.0, 1.0, 2.0]))
+        steps = np.diff(beside, axis=0) / h
+        assert np.abs(steps[2] - steps[1]).max() < 5 * SLOW + 1e-3
+
+
+def test_beside_equally_thick_stations_the_path_slows_down_and_does_not_stop_before():
+    easing = Easing(np.array([0.0, 1.0]), np.array([0.0]), np.array([0.5]))
+    q = np.linspace(0.0, 1.0, 401)
+    _, fraction = easing(q)
+    assert np.all(np.diff(fraction) > 0)
+    free = (q >= EASED) & (q <= 1.0 - EASED)
+    assert_allclose(fraction[free], q[free], atol=1e-15)
+    slopes = np.diff(fraction) / np.diff(q)
+    assert slopes[0] < 0.05
+    assert slopes[-1] == pytest.approx(0.5, abs=0.02)
+
+
+@given(SEEDS)
+def test_neighbours_that_differ_by_noise_are_one_shape(seed):
+    rng = np.random.default_rng(seed)
+    near = grassmann.exp(X[2], 0.5 * NOISE * random_tangent(rng, X[2], 1.0))
+    path = SplinePath(KNOTS, np.stack([X[1], X[2], near, X[3], X[1]]))
+    between = path(np.linspace(KNOTS[1], KNOTS[2], 21))
+    assert grassmann.distance(between, between[:1]).max() < NOISE
+
+
+@given(SEEDS)
+def test_a_geodesic_through_the_stations_is_kept(seed):
+    rng = np.random.default_rng(seed)
+    start = random_points(rng, 1, 12)[0]
+    along = random_tangent(rng, start, 1.0)
+    at = np.array([0.0, 0.1, 0.4, 0.6, 1.0])
+    points = grassmann.exp(start[None], at[:, None, None] * along)
+    q = np.linspace(0.0, 1.0, 23)
+    wanted = grassmann.exp(start[None], q[:, None, None] * along)
+    assert grassmann.distance(SplinePath(at, points)(q), wanted).max() < 1e-7
+
+
+def test_the_spline_path_is_the_same_from_tip_to_root():
+    knots = np.cumsum([0.0, 0.2, 0.3, 0.1, 0.4])
+    chained = affine.cluster(X, M)[0]
+    forth = SplinePath(knots, chained)
+    back = SplinePath(1.0 - knots[::-1], chained[::-1])
+    q = np.linspace(0.0, 1.0, 31)
+    assert grassmann.distance(forth(q), back(1.0 - q)).max() < 1e-7
 
 
 @MAKERS
 def test_paths_hold_their_ends_beyond_the_stations(maker):
-    path, _ = maker(KNOTS + 1.0, X, M)
+    path, _ = maker(Parameter(KNOTS + 1.0), X, M)
     first, last = path(KNOTS[[0, -1]] + 1.0)
     assert np.all(np.isfinite(path(np.array([1.0 + 1e-9, 2.0 - 1e-9]))))
     assert_allclose(path(np.array([1.0]))[0], first, atol=0)
@@ -179,7 +262,7 @@ def test_paths_hold_their_ends_beyond_the_stations(maker):
 @MAKERS
 @pytest.mark.parametrize("k", range(4))
 def test_paths_run_from_each_station_to_the_next(maker, k):
-    path, _ = maker(KNOTS, X, M)
+    path, _ = maker(SPAN, X, M)
     start, end = path(KNOTS[[k, k + 1]])
     whole = grassmann.distance(start, end)
     between = path(np.linspace(KNOTS[k], KNOTS[k + 1], 9))
@@ -189,7 +272,7 @@ def test_paths_run_from_each_station_to_the_next(maker, k):
 
 
 def test_mirrored_representatives_do_not_mirror_the_spline_path():
-    path, maps_ = spline_path(KNOTS, X, M)
+    path, maps_ = spline_path(SPAN, X, M)
     assert np.all(np.linalg.det(maps_) * np.linalg.det(M) > 0)
     for k in (0, -1):
         assert np.linalg.det(path(KNOTS)[k].T @ X[k]) > 0

@@ -17,7 +17,7 @@ from bladegen.blade import outputs, parts
 from bladegen.blade.changes.deformation import AffineChange, Coordinates, Window
 from bladegen.blade.edges import MINIMUM_EDGE, TrailingEdge
 from bladegen.blade.lofting.loft import lofted
-from bladegen.blade.lofting.paths import PATHS
+from bladegen.blade.lofting.paths import DEFAULT, PATHS
 from bladegen.blade.perturbation import Perturbation, Where, change_of, together, told
 from bladegen.blade.planform import Planform, SectionPlanes, flange_to_axis
 from bladegen.blade.shape import Shape
@@ -108,7 +108,7 @@ class Blade:
         definition: BladeDefinition,
         *,
         landmarks: int = 401,
-        path: str = "geodesic",
+        path: str = DEFAULT,
         planes: SectionPlanes = flange_to_axis,
         trailing_edge: TrailingEdge = MINIMUM_EDGE,
         spacing: Spacing = clustered,
@@ -124,7 +124,7 @@ class Blade:
         landmarks : int
             Landmarks a section, odd.
         path : str
-            "geodesic" (the paper's) or "spline" (smooth).
+            "spline" (geodesics with blended corners) or "geodesic" (the paper's).
         planes, trailing_edge, spacing : callable
             Section planes, by default normal to the pitch axis at the root's flange and to the
             reference axis past the round root; finish of the trailing edges, by default at least

@@ -9,7 +9,8 @@ from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.changes.deformation import Deformation, Thickening
 from bladegen.blade.lofting.edge_widths import Joining
 from bladegen.blade.lofting.loft import Loft
-from bladegen.blade.lofting.paths import Parameter, Path, PathMaker
+from bladegen.blade.lofting.parameters import Parameter
+from bladegen.blade.lofting.paths import Path, PathMaker
 from bladegen.blade.planform import Planform, SectionPlanes
 from bladegen.blade.shape import Shape
 from bladegen.definition.blade_definition import BladeDefinition

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from bladegen.blade.blade import PATHS, Blade
+from bladegen.blade.lofting.paths import DEFAULT
 from bladegen.blade.planform import PLANES
 from bladegen.cli.options.fairing import chord_share, planform_fairing
 from bladegen.cli.options.parsing import finish
@@ -67,7 +68,7 @@ def _remade(blade: Blade, told: Provenance) -> Blade:
         made = Blade.from_definition(
             blade.definition,
             landmarks=int(how["landmarks"]),
-            path=how["path"] if how["path"] in PATHS else "geodesic",
+            path=how["path"] if how["path"] in PATHS else DEFAULT,
             planes=PLANES.get(how["planes"], blade.planes),
             trailing_edge=finish(how["trailing_edge"]),
             fairing=chord_share(how["fairing"], "fairing"),

@@ -10,7 +10,17 @@ Formulas: Edelman, Arias & Smith, SIAM J. Matrix Anal. Appl. 20 (1998), theorems
 import numpy as np
 
 from bladegen.errors import GeometryError
-from bladegen.shapes.small_matrices import angle_over_sine, apply, cos, sinc, svd, versine
+from bladegen.shapes.small_matrices import (
+    angle_over_sine,
+    angle_over_tangent,
+    angle_over_tangent_slope,
+    apply,
+    apply_rate,
+    cos,
+    sinc,
+    svd,
+    versine,
+)
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array
 
@@ -22,6 +32,7 @@ __all__ = [
     "karcher_mean",
     "log",
     "log_factors",
+    "log_rate",
     "norm",
     "transport",
 ]
@@ -123,6 +134,37 @@ def log_factors(overlap: Array) -> tuple[Array, Array]:
         )
     Ut_f = angle_over_sine(cosines)[..., None] * U.mT
     return Wt.mT @ Ut_f, (U * cosines[..., None, :]) @ Ut_f
+
+
+def log_rate(X: Array, Y: Array, E: Array) -> Array:
+    """Return how `log(X, Y)` changes as `Y` moves with velocity `E`.
+
+    Parameters
+    ----------
+    X, Y : (..., n, p) arrays
+        Orthonormal bases, less than 90 degrees apart.
+    E : (..., n, p) array
+        Tangent vector at the basis `Y`.
+
+    Returns
+    -------
+    (..., n, p) array
+        Tangent vector at `X`: the differential of the logarithm, applied to `E`.
+
+    Notes
+    -----
+    log = H f(H^T H) with H = Y (X^T Y)^-1 - X and f(s^2) = arctan s / s; the derivative of f of
+    a matrix is that of Daletskii and Krein (Higham, Functions of Matrices (2008), theorem 3.11).
+    """
+    X, Y, E = _alike(X, Y, E)
+    inverse = np.linalg.inv(X.mT @ Y)
+    H = Y @ inverse - X
+    rate = (E - Y @ (inverse @ (X.mT @ E))) @ inverse
+    crossed = rate.mT @ H
+    square, moved = H.mT @ H, crossed + crossed.mT
+    D: Array = rate @ apply(angle_over_tangent, square)
+    D = D + H @ apply_rate(angle_over_tangent, angle_over_tangent_slope, square, moved)
+    return D - X @ (X.mT @ D)
 
 
 def distance(X: Array, Y: Array) -> Array:

@@ -6,7 +6,21 @@ import numpy as np
 
 from bladegen.support.arrays import Array
 
-__all__ = ["angle_over_sine", "apply", "cos", "exp", "sinc", "svd", "versine"]
+__all__ = [
+    "angle_over_sine",
+    "angle_over_tangent",
+    "angle_over_tangent_slope",
+    "apply",
+    "apply_rate",
+    "cos",
+    "exp",
+    "sinc",
+    "svd",
+    "versine",
+]
+
+SMALL = 1e-3  # below it a series of four terms is exact to 1e-12
+NEAR = 1e-5  # eigenvalues nearer than this have the slope between them: exact to 1e-11
 
 
 def svd(A: Array) -> tuple[Array, Array, Array]:
@@ -55,6 +69,27 @@ def apply(f: Callable[[Array], Array], A: Array) -> Array:
     return result
 
 
+def apply_rate(
+    f: Callable[[Array], Array], slope: Callable[[Array], Array], A: Array, change: Array
+) -> Array:
+    """Return how `apply(f, A)` changes as A changes at the symmetric rate `change`.
+
+    In A's eigenvectors each entry is multiplied by the divided difference of f between its two
+    eigenvalues (Daletskii and Krein); `slope` is f's derivative.
+    """
+    w, V = np.linalg.eigh(A)
+    apart = w[..., :, None] - w[..., None, :]
+    middle = 0.5 * (w[..., :, None] + w[..., None, :])
+    near = np.abs(apart) < NEAR
+    values = f(np.maximum(w, 0.0))
+    differences = values[..., :, None] - values[..., None, :]
+    divided = np.where(
+        near, slope(np.maximum(middle, 0.0)), differences / np.where(near, 1.0, apart)
+    )
+    result: Array = V @ (divided * (V.mT @ change @ V)) @ V.mT
+    return result
+
+
 def exp(A: Array) -> Array:
     """Return the exponentials of the symmetric matrices `A`, shape (..., 2, 2).
 
@@ -89,3 +124,19 @@ def angle_over_sine(cosine: Array) -> Array:
     sine = np.sqrt((1.0 - c) * (1.0 + c))
     ratio: Array = np.divide(np.arccos(c), sine, out=np.ones_like(c), where=sine > 0)
     return ratio
+
+
+def angle_over_tangent(squared: Array) -> Array:
+    """arctan t / t, which is 1 at zero, of t squared."""
+    t = np.sqrt(squared)
+    ratio: Array = np.divide(np.arctan(t), t, out=np.ones_like(t), where=t > 0)
+    return ratio
+
+
+def angle_over_tangent_slope(squared: Array) -> Array:
+    """The derivative of `angle_over_tangent` in t squared, -1/3 at zero."""
+    x = np.where(squared < SMALL, 1.0, squared)
+    series = -1.0 / 3.0 + squared * (2.0 / 5.0 - squared * (3.0 / 7.0 - squared * (4.0 / 9.0)))
+    direct = (1.0 / (1.0 + x) - angle_over_tangent(x)) / (2.0 * x)
+    slope: Array = np.where(squared < SMALL, series, direct)
+    return slope

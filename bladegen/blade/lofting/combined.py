@@ -10,7 +10,7 @@ import numpy as np
 
 from bladegen.support.arrays import Array, Indices
 
-__all__ = ["Combined"]
+__all__ = ["Combined", "segments"]
 
 
 class Combined(NamedTuple):
@@ -41,3 +41,8 @@ class Combined(NamedTuple):
             np.matmul(weights[first:last], columns, out=sections[first:last])
         planes += b.T[..., None]
         return planes.transpose(1, 2, 0)
+
+
+def segments(knots: Array, q: Array) -> Indices:
+    """Return the index of the segment between knots that holds each q."""
+    return np.clip(np.searchsorted(knots, q, side="right") - 1, 0, len(knots) - 2)

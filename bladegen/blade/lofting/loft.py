@@ -14,16 +14,8 @@ from bladegen.airfoils.landmarks import Contour, Spacing, contour, landmark_para
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.lofting.edge_widths import BETWEEN, EdgeWidths, Joining
 from bladegen.blade.lofting.joined import JoinedSections
-from bladegen.blade.lofting.paths import (
-    PATHS,
-    GeodesicPath,
-    Parameter,
-    Path,
-    PathMaker,
-    SectionSpline,
-    SplinePath,
-    geodesic_path,
-)
+from bladegen.blade.lofting.parameters import Parameter
+from bladegen.blade.lofting.paths import PATHS, Maps, Path, PathMaker, spline_path
 from bladegen.definition.airfoil_findings import disagreeing, opened
 from bladegen.definition.blade_definition import BladeDefinition, Distribution, pchip
 from bladegen.definition.thickness import own_thickness
@@ -58,7 +50,7 @@ class Loft:
     relative_thickness : Distribution, optional
         The thickness over chord that rules over span; without it, that of the path.
     path : callable
-        How stations are joined: `paths.geodesic_path` or `spline_path`.
+        How stations are joined: `paths.spline_path` or `geodesic_path`.
     edge_width : callable, optional
         Joins the stations' edge widths over the path's parameter: `definition.pchip`, or None
         for the widths that the path happens to have.
@@ -75,7 +67,7 @@ class Loft:
     M: Array
     b: Array
     relative_thickness: Distribution | None = None
-    path: PathMaker = geodesic_path
+    path: PathMaker = spline_path
     edge_width: Joining | None = pchip
     contours: tuple[Contour, ...] | None = None
     fairing: float | None = None
@@ -100,14 +92,13 @@ class Loft:
         return Parameter(self.eta, self.relative_thickness)
 
     @cached_property
-    def _joined(self) -> tuple[Path, SectionSpline]:
+    def _joined(self) -> tuple[Path, Maps]:
         # A representative's rotation is moved to the tip's M first, so that no result
         # depends on which representatives there are.
-        knots = self.parameter.knots
         angle, _ = affine.polar(self.M[-1:])
         turn = affine.from_polar(angle, np.zeros((1, 2, 2)))
-        path, M = self.path(knots, self.representatives @ turn, turn.mT @ self.M)
-        return path, SectionSpline(knots, M, self.b)
+        path, M = self.path(self.parameter, self.representatives @ turn, turn.mT @ self.M)
+        return path, path.maps(M, self.b)
 
     @property
     def shape_path(self) -> Path:
@@ -116,9 +107,9 @@ class Loft:
 
     def at(self, eta: Array) -> tuple[Array, Array, Array]:
         """Return the path's points X and their maps M and b at span fractions (k,)."""
-        path, spline = self._joined
+        path, maps = self._joined
         q = self.parameter(eta)
-        return path(q), *spline(q)
+        return path(q), *maps(q)
 
     def shapes(self, eta: Array) -> tuple[Array, Array, Array]:
         """Return shapes (k, n, 2) at span fractions (k,), their edges brought to width, M and b.
@@ -138,13 +129,9 @@ class Loft:
         return Recent(REMEMBERED)
 
     def _sections(self, eta: Array) -> JoinedSections:
-        path, spline = self._joined
+        path, maps = self._joined
         q, ruling = self.parameter(eta), self.ruling(eta)
-        M, b = spline(q)
-        if isinstance(path, GeodesicPath | SplinePath):
-            points = path.combined(q).mapped(M, b)
-        else:
-            points = affine.restore(path(q), M, b)
+        points = path.combined(q).mapped(*maps(q))
         curves, wedges = self.splines.fit(points), None
         if self.edge_width is not None:
             wedges = self._widths.wedges(curves, ruling, q)

@@ -39,8 +39,8 @@ GRIDS = "Structured grids: p3d, fmt, cgns, vtu"
 class PathKind(StrEnum):
     """How stations are joined."""
 
-    geodesic = "geodesic"
     spline = "spline"
+    geodesic = "geodesic"
 
 
 class TipKind(StrEnum):
@@ -132,9 +132,10 @@ class Making:
     path: Annotated[
         PathKind,
         typer.Option(
-            case_sensitive=False, help="Join stations by geodesics or by a smooth spline."
+            case_sensitive=False,
+            help="Join stations by geodesics with blended corners, or by the paper's geodesics.",
         ),
-    ] = PathKind.geodesic
+    ] = PathKind.spline
     planes: Annotated[
         Planes,
         typer.Option(

@@ -1,0 +1,222 @@
+"""The smooth path: the paper's geodesics with their corners blended on the manifold.
+
+Each station gets one velocity, a mean of those with which the geodesics around it arrive and
+leave; between two stations the geodesic is bent to meet both.  Out come bases of shapes over the
+path's parameter; maps go along in the same way.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladegen.blade.lofting.combined import Combined
+from bladegen.blade.lofting.velocities import Easing, blended, three_point
+from bladegen.shapes import affine, grassmann
+from bladegen.support.arrays import Array, Mask
+from bladegen.support.values import brief
+
+__all__ = ["MapSpline", "SplinePath"]
+
+SAME_SHAPE = 1e-12  # rad; neighbours closer than this are one shape
+NOISE = 1e-3  # rad; equally thick neighbours closer than this are told apart by their digits alone
+LEAST_STRETCH = 0.1  # of a station's; how far the splines' control values of it may go down
+
+
+@dataclass(frozen=True, eq=False)
+class SplinePath:
+    """Geodesics from station to station, bent so that they join with one velocity.
+
+    Parameters
+    ----------
+    knots : (s,) array
+        Parameter at the stations, strictly increasing.
+    X : (s, n, 2) array
+        Clustered representatives (`affine.cluster`), so that bases join.
+    thickness : (s,) array, optional
+        Relative thickness at the stations: shapes move as its logarithm does, where the
+        parameter moves as it does.
+    speeds : (2, s) array, optional
+        Of the parameter over span, just before and just after each station.
+
+    Notes
+    -----
+    A segment is a cubic in the tangent space at the middle of its geodesic, so that the geodesic
+    itself is a straight line there.  It ends in the velocities of its stations, carried to that
+    space by the differential of the logarithm.  These are Akima's (`velocities.blended`), of
+    lengths and angles on the manifold alone: no basis, base point or coordinate is preferred.
+    Between identical neighbours the path is constant.
+    """
+
+    knots: Array
+    X: Array
+    thickness: Array | None = None
+    speeds: Array | None = None
+
+    __repr__ = brief
+
+    @cached_property
+    def _drops(self) -> Array:
+        """The change of thickness over a segment, of that at its start; 0 where span rules."""
+        if self.thickness is None:
+            return np.zeros(len(self.knots) - 1)
+        steps, apart = np.diff(self.thickness), np.diff(self.knots)
+        follows = np.isclose(np.abs(steps), apart, rtol=1e-9)
+        return np.where(follows, steps / self.thickness[:-1], 0.0)
+
+    @cached_property
+    def _lengths(self) -> Array:
+        """How far the logarithm of thickness, or span, goes in each segment."""
+        logarithm = np.abs(np.log1p(self._drops))
+        return np.where(self._drops != 0.0, logarithm, np.diff(self.knots))
+
+    @cached_property
+    def same(self) -> Mask:
+        """Which segments join identical shapes, (s - 1,)."""
+        apart = grassmann.norm(grassmann.log(self.X[:-1], self.X[1:]))
+        return apart <= np.where(self._drops != 0.0, SAME_SHAPE, NOISE)
+
+    @cached_property
+    def velocities(self) -> tuple[Array, Array]:
+        """Tangent vectors at the stations just before and just after them, (s, n, 2) each."""
+        lengths, X = self._lengths[:, None, None], self.X
+        leaving, arriving = grassmann.log(X[:-1], X[1:]), -grassmann.log(X[1:], X[:-1])
+        before, after = arriving / lengths, leaving / lengths
+        further = grassmann.transport(after[1:], X[1:-1], X[:-2])
+        earlier = grassmann.transport(before[:-1], X[1:-1], X[2:])
+        velocities = blended(self._lengths, before, after, earlier, further)
+        moving = ~self.same[:, None, None]
+        before, after = velocities.copy(), velocities
+        before[1:] *= moving
+        after[:-1] *= moving
+        return before, after
+
+    @cached_property
+    def easing(self) -> Easing:
+        """What turns the parameter into fractions of segments, slowed down where it must be."""
+        return Easing.of(self.knots, self.speeds, self.same)
+
+    @cached_property
+    def _pieces(self) -> tuple[Array, Array, Array]:
+        """Columns of the segments (s - 1, 10, n), products (s - 1, 8, 8), turning (s - 1, 2)."""
+        X, lengths = self.X, self._lengths[:, None, None]
+        step = grassmann.log(X[:-1], X[1:])
+        middle = grassmann.exp(X[:-1], 0.5 * step)
+        end = grassmann.log(middle, X[1:])
+        arriving, leaving = self.velocities[0][1:], self.velocities[1][:-1]
+        start_rate = lengths * grassmann.log_rate(middle, X[:-1], leaving)
+        end_rate = lengths * grassmann.log_rate(middle, X[1:], arriving)
+        powers = np.stack(_cubic(-end, end, start_rate, end_rate), axis=1)
+        rows = powers.mT.reshape(len(X) - 1, 8, -1)
+        turning = [
+            _turning(X[:-1], middle, lengths * leaving),
+            _turning(X[1:], middle, lengths * arriving),
+        ]
+        columns = np.concatenate([middle.mT, rows], axis=1)
+        return columns, rows @ rows.mT, np.stack(turning, axis=1)
+
+    def __call__(self, q: Array) -> Array:
+        combined = self.combined(q)
+        bases: Array = combined.columns[combined.segments].mT @ combined.weights
+        return bases
+
+    def maps(self, M: Array, b: Array) -> "MapSpline":
+        """Return the stations' affine maps, (s, 2, 2) and (s, 2), joined over the parameter."""
+        return MapSpline(self.easing, M, b, self.same)
+
+    def combined(self, q: Array) -> Combined:
+        """Return the bases at parameters (k,) as combinations."""
+        k, fraction = self.easing(q)
+        columns, products, turning = self._pieces
+        drop = self._drops[k]
+        follows = drop != 0.0
+        run = np.log1p(fraction * drop) / np.where(follows, np.log1p(drop), 1.0)
+        t = np.where(follows & (fraction < 1.0), run, fraction)
+        powers = t[:, None] ** (3.0, 2.0, 1.0, 0.0)
+        scale = (powers[:, :, None, None] * np.eye(2)).reshape(len(q), 8, 2)
+        cosine, sinc = grassmann.exp_factors(scale.mT @ (products[k] @ scale))
+        away = t * (1.0 - t)
+        angle = -away * (turning[k, 0] * (1.0 - t) - turning[k, 1] * t)
+        weights = np.concatenate([cosine, scale @ sinc], axis=1)
+        return Combined(columns, k, weights @ affine.from_polar(angle, np.zeros((len(q), 2, 2))))
+
+
+@dataclass(frozen=True, eq=False)
+class MapSpline:
+    """The affine part of the sections over the path's parameter, with one slope at each station.
+
+    Parameters
+    ----------
+    easing : Easing
+        Parameter at the stations, and how it is slowed down beside them.
+    M : (s, 2, 2) array
+        Linear maps with positive determinant.
+    b : (s, 2) array
+        Translations.
+    same : (s - 1,) array of bool
+        Segments that join identical shapes: constant where the maps agree too.
+
+    Notes
+    -----
+    Cubics of the polar factors, angle and stretch, and of b, with the slopes of parabolas through
+    three stations.  Where a stretch could come near a singular one, its slopes are reduced.
+    """
+
+    easing: Easing
+    M: Array
+    b: Array
+    same: Mask
+
+    __repr__ = brief
+
+    @cached_property
+    def _powers(self) -> Array:
+        """Angle, stretch and translation as cubics of a segment's fraction, (s - 1, 7, 4)."""
+        angle, log_stretch = affine.polar(self.M)
+        stretch = affine.from_polar(np.zeros(len(angle)), log_stretch)
+        values = np.concatenate([np.unwrap(angle)[:, None], stretch.reshape(-1, 4), self.b], axis=1)
+        apart = np.diff(self.easing.knots)
+        slopes = three_point(apart, values)
+        slopes *= _reduced(stretch, slopes[:, 1:5].reshape(-1, 2, 2), apart)[:, None]
+        still = self.same & (np.abs(np.diff(values, axis=0)).max(axis=1) <= NOISE)
+        steps = np.where(still, 0.0, apart)[:, None]
+        cubic = _cubic(values[:-1], values[1:], steps * slopes[:-1], steps * slopes[1:])
+        return np.stack(cubic, axis=-1)
+
+    def __call__(self, q: Array) -> tuple[Array, Array]:
+        """Return M (k, 2, 2) and b (k, 2) at parameters (k,)."""
+        k, t = self.easing(q)
+        parts = (self._powers[k] @ (t[:, None] ** (3.0, 2.0, 1.0, 0.0))[..., None])[..., 0]
+        turn = affine.from_polar(parts[..., 0], np.zeros((*q.shape, 2, 2)))
+        return turn @ parts[..., 1:5].reshape(*q.shape, 2, 2), parts[..., 5:]
+
+
+def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, ...]:
+    """Return the coefficients of t^3, t^2, t and 1 on [0, 1], by ends and slopes there."""
+    step = end - start
+    return leaving + arriving - 2.0 * step, 3.0 * step - 2.0 * leaving - arriving, leaving, start
+
+
+def _turning(X: Array, middle: Array, velocity: Array) -> Array:
+    """Return how fast the basis that lies closest to `middle` turns as X moves, (s,) [rad].
+
+    With X^T middle = S symmetric, the turn W obeys S W + W S = B - B^T, B = velocity^T middle.
+    """
+    B = velocity.mT @ middle
+    trace = np.trace(X.mT @ middle, axis1=-2, axis2=-1)
+    rate: Array = (B[..., 1, 0] - B[..., 0, 1]) / trace
+    return rate
+
+
+def _reduced(stretch: Array, slopes: Array, apart: Array) -> Array:
+    """Return by how much slopes (s, 2, 2) are to be multiplied, at most 1, (s,).
+
+    A cubic stays positive definite where its control values do: those beside a station are its
+    stretch and a third of the slope times the segment's length, to either side.
+    """
+    root = np.linalg.inv(np.linalg.cholesky(stretch))
+    relative = np.abs(np.linalg.eigvalsh(root @ slopes @ root.mT)).max(axis=-1) / 3.0
+    reach = relative * np.maximum(np.append(apart, 0.0), np.insert(apart, 0, 0.0))
+    most = 1.0 - LEAST_STRETCH
+    factors: Array = most / np.maximum(reach, most)
+    return factors

@@ -1,3 +1,6 @@
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -5,6 +8,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.interpolate import Akima1DInterpolator
 
+import bladegen as bg
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.blade.lofting.geodesics import GeodesicPath, SectionSpline
 from bladegen.blade.lofting.parameters import Parameter
@@ -306,3 +310,19 @@ def test_segments_of_equal_thickness_follow_the_span():
     assert_allclose(parameter.knots, [0.0, 0.5, 0.7], atol=1e-15)
     eta = np.linspace(0.0, 0.5, 11)
     assert_allclose(parameter(eta), eta, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", bg.bundled())
+def test_the_spline_predicts_left_out_stations_better_than_the_geodesics_and_any_blend(
+    name, monkeypatch
+):
+    """docs/guide.md: the lowest median of the four, in relative thickness."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[1] / "benchmarks"))
+    from paths import missed
+
+    medians = {
+        way: np.median(off)
+        for way, off in missed(bg.Blade.from_definition(bg.read(name)), True).items()
+    }
+    assert min(medians, key=medians.get) == "spline"
+    sys.modules.pop("paths"), sys.modules.pop("figures")

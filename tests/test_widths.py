@@ -60,11 +60,11 @@ def test_stations_stay_as_the_path_has_them(path, definition):
 
 
 @pytest.mark.parametrize(
-    ("path", "radians", "chords"), [("geodesic", 2.6e-3, 1.1e-3), ("spline", 6.6e-3, 2.1e-3)]
+    ("path", "radians", "chords"), [("geodesic", 2.6e-3, 1.1e-3), ("spline", 3.5e-3, 1.4e-3)]
 )
 def test_wedges_leave_the_path_by_no_more_than_the_docs_say(path, radians, chords):
     """docs/theory.md and docs/smoothness.md; distances on Gr(n, 2), and of landmarks."""
-    eta = np.union1d(np.linspace(0.0, 1.0, 41), [0.13, 0.196, 0.199, 0.26])  # worst of 1,001
+    eta = np.union1d(np.linspace(0.0, 1.0, 41), [0.077, 0.13, 0.204, 0.26])  # worst of 1,001
     on_path, moved = [], []
     for name in bg.bundled():
         blade = bg.Blade.from_definition(bg.read(name), path=path)

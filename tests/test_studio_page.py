@@ -202,6 +202,16 @@ def test_a_slider_moves_the_picture_and_the_numbers(opened):
     assert label.startswith("Section at 50 % of the span")
 
 
+def test_the_paper_s_path_is_one_press_away(opened):
+    tab = opened()
+    before = count(tab)
+    tab.get_by_role("button", name="Geodesics").click()
+    holds(tab, path="geodesic")
+    drawn(tab, before + 1)
+    tab.keyboard.press("Control+z")
+    holds(tab, path=None)
+
+
 def test_typed_numbers_undo_redo_and_reset(opened):
     tab = opened("?blade=nrel5mw&twist=1")
     field = tab.get_by_role("spinbutton", name="Twist [deg], value")

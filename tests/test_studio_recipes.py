@@ -17,6 +17,7 @@ from bladegen.studio.state import State
 ENTRY = Entry("nrel5mw", "nrel5mw", "nrel5mw", "nrel5mw")
 MOVED = State("nrel5mw", (-0.03, 0.0, 0.01, -0.005), (0.1, 0.3), 1.05, 0.98, 1.1, -1.5, 0.5)
 STATES = [State("nrel5mw"), MOVED, replace(MOVED, t=(0.0,) * 4, window=None)]
+GEODESIC = State("nrel5mw", path="geodesic")
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +36,12 @@ def test_the_script_makes_the_same_blade(baseline, state, monkeypatch):
     eta = np.linspace(0.0, 1.0, 12)
     assert_allclose(blade.sections(eta), baseline.variant(state).sections(eta), rtol=0, atol=0)
     assert blade.name == baseline.stem(state)
+
+
+def test_the_paper_s_path_is_in_the_script_and_the_command():
+    assert ', path="geodesic")' in python(GEODESIC, ENTRY, "x").replace("'", '"')
+    words = shlex.split(shell(GEODESIC, ENTRY, "x"))
+    assert words[words.index("--path") + 1] == "geodesic"
 
 
 def test_the_command_makes_the_same_blade(baseline, tmp_path):

@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 from threading import Lock
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.lofting.paths import DEFAULT, PATHS
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import FileError, StudioError, visible
 from bladegen.exports.inventory import REPORT
@@ -75,7 +76,7 @@ class Library:
         self._lock = Lock()
         self._entries = {name: Entry(name, name, name, name) for name in bundled()}
         self._uploads: list[str] = []
-        self._baselines: dict[str, Baseline] = {}
+        self._baselines: dict[tuple[str, str], Baseline] = {}
         self._space: ShapeSpace | None = None
 
     @property
@@ -120,7 +121,7 @@ class Library:
         key = _key(path.name, path.read_bytes(), _others(path, definition))
         folder = None if airfoils is None else str(airfoils)
         entry = Entry(key, visible(path.name), str(path), source, folder)
-        self._prepared(entry, lambda: Blade.from_definition(definition))
+        self._prepared(entry, lambda: definition)
         self._entries[key] = entry
         return key
 
@@ -162,7 +163,7 @@ class Library:
                 raise FileError(plain, problems + [TOGETHER] * alone) from None
             key = _key(plain, content, _others(path, definition))
             entry = Entry(key, visible(plain), str(self._folder / key / path.name), plain)
-            self._prepared(entry, lambda: Blade.from_definition(definition))
+            self._prepared(entry, lambda: definition)
             with self._lock:
                 if key in self._entries:
                     return key
@@ -171,26 +172,28 @@ class Library:
                 self._uploads.append(key)
                 for old in self._uploads[:-KEPT]:
                     rmtree(Path(self._entries.pop(old).source).parent, ignore_errors=True)
-                    self._baselines.pop(old, None)
+                    for way in PATHS:
+                        self._baselines.pop((old, way), None)
                 del self._uploads[:-KEPT]
         return key
 
-    def baseline(self, key: str) -> Baseline:
-        """Return an entry's blade, prepared."""
+    def baseline(self, key: str, path: str = DEFAULT) -> Baseline:
+        """Return an entry's blade, its stations joined by a path of `paths.PATHS`, prepared."""
         entry = self.entry(key)
-        return self._prepared(
-            entry,
-            lambda: Blade.from_definition(read(entry.source, airfoils=entry.airfoils)),
-        )
+        return self._prepared(entry, lambda: read(entry.source, airfoils=entry.airfoils), path)
 
-    def _prepared(self, entry: Entry, make: Callable[[], Blade]) -> Baseline:
+    def _prepared(
+        self, entry: Entry, defined: Callable[[], BladeDefinition], path: str = DEFAULT
+    ) -> Baseline:
+        key = entry.key, path
         with self._lock:
-            found = self._baselines.get(entry.key)
+            found = self._baselines.get(key)
         if found is None:
-            found = Baseline(entry.key, make(), self.space)
+            blade = Blade.from_definition(defined(), path=path)
+            found = Baseline(entry.key, blade, self.space)
             found.at(0.5)  # so that nothing is offered that cannot be shown
             with self._lock:
-                self._baselines[entry.key] = found
+                self._baselines[key] = found
                 while len(self._baselines) > KEPT:
                     del self._baselines[next(iter(self._baselines))]
         return found

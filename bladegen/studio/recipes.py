@@ -2,6 +2,7 @@
 
 import shlex
 
+from bladegen.blade.lofting.paths import DEFAULT
 from bladegen.studio.controls import AFFINE
 from bladegen.studio.library import Entry
 from bladegen.studio.state import State
@@ -14,6 +15,8 @@ def shell(state: State, entry: Entry, stem: str) -> str:
     words = ["bladegen", "perturb" if state.changed else "build", entry.named, "-o", "out/"]
     if entry.airfoils is not None:
         words += ["--airfoils", entry.airfoils]
+    if state.path != DEFAULT:
+        words += ["--path", state.path]
     if any(state.t):
         # a value that starts with a minus would be taken for an option
         words.append("--pga=" + ",".join(f"{value:g}" for value in state.t))
@@ -32,12 +35,13 @@ def shell(state: State, entry: Entry, stem: str) -> str:
 def python(state: State, entry: Entry, stem: str) -> str:
     """Return the script that makes the blade of a state and writes ``<stem>.step``."""
     folder = "" if entry.airfoils is None else f", airfoils={entry.airfoils!r}"
+    path = "" if state.path == DEFAULT else f", path={state.path!r}"
     turned = any(control.unit == "deg" and control.moved(state) for control in AFFINE)
     lines = [
         *(["from math import radians", ""] if turned else []),
         "import bladegen as bg",
         "",
-        f"blade = bg.Blade.from_definition(bg.read({entry.named!r}{folder}))",
+        f"blade = bg.Blade.from_definition(bg.read({entry.named!r}{folder}){path})",
     ]
     if state.changed:
         asked = []

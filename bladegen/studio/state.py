@@ -12,6 +12,7 @@ from urllib.parse import parse_qs, urlencode
 
 import numpy as np
 
+from bladegen.blade.lofting.paths import DEFAULT, PATHS
 from bladegen.errors import StudioError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.controls import AFFINE, CONTROLS, END, START, Control, controls
@@ -38,6 +39,8 @@ class State:
         See `affine_change.AffineChange`; twist in degrees, prebend is `prebend_scale`.
     at : float
         Span fraction of the section that is shown.
+    path : str
+        How stations are joined, of `paths.PATHS`.
     """
 
     blade: str
@@ -49,6 +52,7 @@ class State:
     twist: float = 0.0
     prebend: float = 1.0
     at: float = 0.5
+    path: str = DEFAULT
 
     @property
     def changed(self) -> bool:
@@ -78,9 +82,19 @@ class State:
             )
         return replace(self, window=window)
 
+    def joined(self, path: str) -> "State":
+        """Return the state with its stations joined by another path, or say why it is none."""
+        if path not in PATHS:
+            raise StudioError(f"path: got {path[:40]!r}, allowed are {', '.join(PATHS)}")
+        return replace(self, path=path)
+
+    def baseline(self, blade: str) -> "State":
+        """Return a blade without changes: the same section shown, stations joined as here."""
+        return State(blade, (0.0,) * len(self.t), at=self.at, path=self.path)
+
     def reset(self) -> "State":
         """Return the baseline, with the same section shown."""
-        return State(self.blade, (0.0,) * len(self.t), at=self.at)
+        return self.baseline(self.blade)
 
     def drawn(self, space: ShapeSpace, rng: np.random.Generator, reach: float) -> "State":
         """Return random changes: shape in the ellipsoid and the box of the data, both times
@@ -111,6 +125,8 @@ def to_query(state: State) -> str:
         words["t"] = ",".join(f"{value:g}" for value in state.t)
     if state.window is not None:
         words["window"] = ",".join(f"{value:g}" for value in state.window)
+    if state.path != plain.path:
+        words["path"] = state.path
     for entry in fields(State):
         value = getattr(state, entry.name)
         if isinstance(value, float) and value != getattr(plain, entry.name):
@@ -151,6 +167,8 @@ def from_query(query: str, known: Mapping[str, Control], default: str) -> State:
             if len(numbers) != 2:
                 raise StudioError(f"link: window: got {text[:40]!r}, must be two span fractions")
             state = state.within(*numbers)
+        elif key == "path":
+            state = state.joined(text)
         elif key in CONTROLS and key not in ("start", "end"):
             state = state.having(known[key], text)
         else:

@@ -96,7 +96,7 @@ def _made(job: Job) -> Made:
         job.told.write_text(message, encoding="utf-8")
 
     told("reading the blade")
-    baseline = _baseline(job.source, job.airfoils)
+    baseline = _baseline(job.source, job.airfoils, job.state.path)
     variant = baseline.variant(job.state)
     path = Path(job.folder) / f"{baseline.stem(job.state)}{job.suffix}"
     told(f"making {job.suffix.lstrip('.').upper()}")
@@ -120,10 +120,11 @@ def _together(path: Path, job: Job) -> Path:
 
 
 @lru_cache(2)
-def _baseline(source: str, airfoils: str | None) -> Baseline:
+def _baseline(source: str, airfoils: str | None, path: str) -> Baseline:
     """Return a blade; what lies under a source in a studio's folder never changes."""
     definition = read(source, airfoils=airfoils)
-    return Baseline(source, Blade.from_definition(definition), ShapeSpace.bundled())
+    blade = Blade.from_definition(definition, path=path)
+    return Baseline(source, blade, ShapeSpace.bundled())
 
 
 class Worker:

@@ -14,6 +14,7 @@ __all__ = ["build"]
 
 ICONS = {"good": "check_circle", "odd": "info", "bad": "error"}
 STATUS = {"good": "good", "odd": "worth a look", "bad": "not usable"}
+JOINED = {"spline": "Smooth", "geodesic": "Geodesics"}
 VIEWS = {
     "blade": ("Whole blade", "Blade"),
     "root": ("The root", "Root"),
@@ -65,6 +66,7 @@ def _sliders(page: Page) -> None:
         _plain_number(page, control)
     ui.html("Along the span", tag="h2", sanitize=False)
     _window(page)
+    _path(page)
 
 
 def _plain_number(page: Page, control: Control) -> None:
@@ -103,7 +105,7 @@ def _window(page: Page) -> None:
     def now() -> tuple[float, float]:
         if page.state.window is not None:
             return page.state.window
-        window = page.studio.library.baseline(page.state.blade).window
+        window = page.studio.library.baseline(page.state.blade, page.state.path).window
         return round(window.start, 2), round(window.end, 2)
 
     def start(value: Any) -> None:
@@ -114,6 +116,22 @@ def _window(page: Page) -> None:
 
     _number(page, START, lambda: now()[0], start)
     _number(page, END, lambda: now()[1], end)
+
+
+def _path(page: Page) -> None:
+    """Put the choice of how stations are joined."""
+    from nicegui import ui
+
+    with ui.element("div").classes("choice"):
+        ui.label("Path").tooltip("How stations are joined: smoothly, or by the paper's geodesics")
+        choice = ui.toggle(JOINED, value=page.state.path)
+        choice.props('dense no-caps unelevated size=12px aria-label="Path"')
+    choice.on_value_change(lambda event: page.join(event.value))
+
+    def follow() -> None:
+        choice.set_value(page.state.path)
+
+    page.followers.append(follow)
 
 
 def _checks() -> Callable[[Shown], None]:
@@ -197,7 +215,7 @@ def _section(page: Page) -> Any:
     placed.on_click(turn)
 
     def follow() -> None:
-        length = page.studio.library.baseline(page.state.blade).blade.length
+        length = page.studio.library.baseline(page.state.blade, page.state.path).blade.length
         words.set_text(f"{page.state.at * length:.1f} m")
 
     page.followers.append(follow)

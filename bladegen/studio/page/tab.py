@@ -108,24 +108,32 @@ class Page:
         from nicegui import run
 
         try:
-            await run.io_bound(self.studio.library.baseline, self.state.blade)
+            await run.io_bound(self.studio.library.baseline, self.state.blade, self.state.path)
         except BladegenError as error:
             self.trouble = str(error)
             self.history = History(from_query("", self.controls, self.studio.first))
 
     async def pick(self, key: str) -> None:
         """Show another blade of the library."""
+        if key != self.state.blade:
+            await self._take(self.state.baseline(key))
+
+    async def join(self, path: str) -> None:
+        """Join the blade's stations by another path; its changes stay."""
+        if path != self.state.path:
+            await self._take(self.state.joined(path))
+
+    async def _take(self, state: State) -> None:
+        """Show a state whose blade is first prepared; one that cannot be is said."""
         from nicegui import run
 
-        if key == self.state.blade:
-            return
         try:
-            await run.io_bound(self.studio.library.baseline, key)
+            await run.io_bound(self.studio.library.baseline, state.blade, state.path)
         except BladegenError as error:
             self.say(str(error), bad=True)
             self.follow()
         else:
-            self.move(self.history.moved(State(key, (0.0,) * len(self.state.t), at=self.state.at)))
+            self.move(self.history.moved(state))
 
     async def draw(self) -> None:
         """Show a random sound variant."""
@@ -134,7 +142,8 @@ class Page:
         state = self.state
 
         def drawn() -> State:
-            return self.studio.library.baseline(state.blade).drawn(state, self._rng)
+            baseline = self.studio.library.baseline(state.blade, state.path)
+            return baseline.drawn(state, self._rng)
 
         found = await run.io_bound(drawn)
         if found is not None:  # which it is when the studio ends
@@ -182,15 +191,16 @@ class Page:
     async def _work(self) -> None:
         from nicegui import run
 
-        blade = self.scene.state.blade if self.scene else ""
+        before = (self.scene.state.blade, self.scene.state.path) if self.scene else ("", "")
         try:
             while self._wanted is not None:
                 state, self._wanted = self._wanted, None
                 shown = await run.io_bound(self.made, state)
                 if shown is None:  # the studio ends
                     return
-                await self._show(shown, refit=state.blade != blade)
-                blade = state.blade
+                now = state.blade, state.path
+                await self._show(shown, refit=now != before)
+                before = now
         except BladegenError as error:
             self.say(str(error), bad=True)
             self.history = self.history.undo()
@@ -200,7 +210,7 @@ class Page:
 
     def made(self, state: State) -> Shown:
         """Make all that a state shows; on a thread."""
-        baseline = self.studio.library.baseline(state.blade)
+        baseline = self.studio.library.baseline(state.blade, state.path)
         scene = baseline.scene(state)
         plain = baseline.at(state.at)
         return Shown(
@@ -230,7 +240,7 @@ class Page:
         """Return the state as a link, as a command and as a script."""
         state, library = self.state, self.studio.library
         entry = library.entry(state.blade)
-        stem = library.baseline(state.blade).stem(state)
+        stem = library.baseline(state.blade, state.path).stem(state)
         return (
             f"{self.client.request.base_url}?{to_query(state)}",
             recipes.shell(state, entry, stem),

@@ -191,7 +191,7 @@ def test_arrays_of_a_blade_cannot_be_written():
 
 def test_wrong_values_are_refused():
     definition = read("nrel5mw")
-    with pytest.raises(DefinitionError, match="path: got 'cubic', allowed are geodesic, spline"):
+    with pytest.raises(DefinitionError, match="path: got 'cubic', allowed are spline, geodesic"):
         Blade.from_definition(definition, path="cubic")
     blade = Blade.from_definition(definition, landmarks=N)
     for bad in (-0.1, 1.1, np.nan):

@@ -14,7 +14,7 @@ from bladegen.blade.lofting.geodesics import GeodesicPath, SectionSpline
 from bladegen.blade.lofting.parameters import Parameter
 from bladegen.blade.lofting.paths import geodesic_path, spline_path
 from bladegen.blade.lofting.splines import NOISE, SplinePath
-from bladegen.blade.lofting.velocities import EASED, SLOW, Easing, blended, three_point
+from bladegen.blade.lofting.velocities import EASED, SLOW, Paces, blended, three_point
 from bladegen.definition.blade_definition import Distribution
 from bladegen.shapes import affine, grassmann
 from strategies import SEEDS, circle, maps, naca, random_points, random_tangent
@@ -154,7 +154,7 @@ def test_velocities_along_a_line_are_akimas_with_squared_weights(count, seed):
     rates = rng.uniform(-1.0, 1.0, count)
     direction = np.array([[0.6], [0.8]])
     V = rates[:, None, None] * direction
-    found = np.sum(blended(apart, V, V, V[:-1], V[1:]) * direction, axis=(1, 2))
+    found = np.sum(blended(V, V, V[:-1], V[1:], np.ones(count + 1)) * direction, axis=(1, 2))
     for k in range(2, count - 1):
         bends = (rates[k - 1] - rates[k - 2]) ** 2, (rates[k + 1] - rates[k]) ** 2
         wanted = (bends[1] * rates[k - 1] + bends[0] * rates[k]) / sum(bends)
@@ -169,7 +169,7 @@ def test_velocities_along_a_line_are_akimas_with_squared_weights(count, seed):
 
 def test_where_nothing_moves_velocities_are_zero():
     still = np.zeros((3, 5, 2))
-    assert_allclose(blended(np.ones(3), still, still, still[:-1], still[1:]), 0.0, atol=0)
+    assert_allclose(blended(still, still, still[:-1], still[1:], np.ones(4)), 0.0, atol=0)
 
 
 @given(st.integers(3, 9), SEEDS)
@@ -177,8 +177,8 @@ def test_three_point_slopes_are_those_of_parabolas(count, seed):
     rng = np.random.default_rng(seed)
     knots = np.cumsum(rng.uniform(0.1, 1.0, count))
     c = rng.normal(size=3)
-    slopes = three_point(np.diff(knots), np.polyval(c, knots))
-    assert_allclose(slopes, np.polyval(np.polyder(c), knots), atol=1e-9)
+    slopes = three_point(np.diff(knots), np.polyval(c, knots)[:, None], np.ones(count))
+    assert_allclose(slopes[:, 0], np.polyval(np.polyder(c), knots), atol=1e-9)
 
 
 @given(st.lists(maps(), min_size=4, max_size=4), SEEDS)
@@ -213,15 +213,33 @@ def test_over_span_sections_of_the_spline_path_have_no_corner(thickness):
 
 
 def test_beside_equally_thick_stations_the_path_slows_down_and_does_not_stop_before():
-    easing = Easing(np.array([0.0, 1.0]), np.array([0.0]), np.array([0.5]))
-    q = np.linspace(0.0, 1.0, 401)
-    _, fraction = easing(q)
+    speeds = np.array([[1.0, 1.0, 1.0, 1.0], [1.0, 1.0, 0.5, 1.0]])
+    paces = Paces(np.array([0.0, 1.0, 2.0, 3.0]), speeds, np.array([True, False, False]))
+    assert_allclose(paces.pace, [1.0, 1.0, 0.5, 1.0])
+    q = np.linspace(1.0, 2.0, 401)[:-1]
+    _, fraction = paces(q)
     assert np.all(np.diff(fraction) > 0)
-    free = (q >= EASED) & (q <= 1.0 - EASED)
-    assert_allclose(fraction[free], q[free], atol=1e-15)
-    slopes = np.diff(fraction) / np.diff(q)
-    assert slopes[0] < 0.05
-    assert slopes[-1] == pytest.approx(0.5, abs=0.02)
+    free = q >= 1.0 + EASED
+    assert_allclose(fraction[free], q[free] - 1.0, atol=1e-14)
+    assert (fraction[1] - fraction[0]) / (q[1] - q[0]) < 0.05
+
+
+@given(st.integers(0, 3), SEEDS)
+def test_velocities_do_not_depend_on_how_fast_the_parameter_runs(station, seed):
+    rng = np.random.default_rng(seed)
+    factor, values = rng.uniform(0.2, 5.0), np.cumsum(rng.normal(size=(5, 1)), axis=0)
+    apart, stretch = rng.uniform(0.1, 1.0, 4), np.ones(4)
+    stretch[station:] = factor  # the parameter runs faster from a station on
+    pace = np.ones(5)
+    pace[station] = factor if station else 1.0
+    before = np.insert(stretch, 0, stretch[0])
+    plain = three_point(apart, values, np.ones(5))
+    assert_allclose(three_point(apart * stretch, values, pace) * before[:, None], plain, atol=1e-9)
+    V = np.diff(values, axis=0)[:, None] / apart[:, None, None]
+    fast = V / stretch[:, None, None]
+    found = blended(fast, fast, fast[:-1], fast[1:], pace)
+    wanted = blended(V, V, V[:-1], V[1:], np.ones(5))
+    assert_allclose(found * before[:, None, None], wanted, atol=1e-9)
 
 
 @given(SEEDS)

@@ -169,10 +169,10 @@ def test_published_polars_bring_their_reference_point(tmp_path):
     centres = {station.airfoil.aerodynamic_center for station in blade.stations}
     assert centres == {0.5, 0.275}
     bg.write(blade, tmp_path / "own.dat")
-    said = (tmp_path / "own_dat_airfoils" / "own_AF019_Coords.txt").read_text().splitlines()
+    said = (tmp_path / "own_dat_airfoils" / "own_AF030_Coords.txt").read_text().splitlines()
     assert float(said[3].split()[0]) == 0.275
     bg.write(with_polars(4e6, source="estimate: x"), tmp_path / "made.dat")
-    said = (tmp_path / "made_dat_airfoils" / "made_AF019_Coords.txt").read_text().splitlines()
+    said = (tmp_path / "made_dat_airfoils" / "made_AF030_Coords.txt").read_text().splitlines()
     assert float(said[3].split()[0]) == 0.25
 
 

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from bladegen.blade.lofting.combined import Combined
-from bladegen.blade.lofting.velocities import Easing, blended, three_point
+from bladegen.blade.lofting.velocities import Paces, blended, three_point
 from bladegen.shapes import affine, grassmann
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.values import brief
@@ -19,7 +19,7 @@ from bladegen.support.values import brief
 __all__ = ["MapSpline", "SplinePath"]
 
 SAME_SHAPE = 1e-12  # rad; neighbours closer than this are one shape
-NOISE = 1e-3  # rad; equally thick neighbours closer than this are told apart by their digits alone
+NOISE = 2e-4  # rad; equally thick neighbours closer than this are told apart by their digits alone
 LEAST_STRETCH = 0.1  # of a station's; how far the splines' control values of it may go down
 
 
@@ -79,22 +79,33 @@ class SplinePath:
     @cached_property
     def velocities(self) -> tuple[Array, Array]:
         """Tangent vectors at the stations just before and just after them, (s, n, 2) each."""
-        lengths, X = self._lengths[:, None, None], self.X
+        lengths, X, pace = self._lengths[:, None, None], self.X, self._pace
         leaving, arriving = grassmann.log(X[:-1], X[1:]), -grassmann.log(X[1:], X[:-1])
         before, after = arriving / lengths, leaving / lengths
         further = grassmann.transport(after[1:], X[1:-1], X[:-2])
         earlier = grassmann.transport(before[:-1], X[1:-1], X[2:])
-        velocities = blended(self._lengths, before, after, earlier, further)
+        velocities = blended(before, after, earlier, further, pace)
         moving = ~self.same[:, None, None]
-        before, after = velocities.copy(), velocities
+        before, after = velocities, velocities / pace[:, None, None]
         before[1:] *= moving
         after[:-1] *= moving
         return before, after
 
     @cached_property
-    def easing(self) -> Easing:
-        """What turns the parameter into fractions of segments, slowed down where it must be."""
-        return Easing.of(self.knots, self.speeds, self.same)
+    def _pace(self) -> Array:
+        """`Paces.pace` of the logarithm of thickness where that rules, (s,)."""
+        drops, thickness = self._drops != 0.0, self.thickness
+        rates = np.ones((2, len(self.knots)))
+        if thickness is not None:
+            rates[0, 1:] = np.where(drops, 1.0 / thickness[1:], 1.0)
+            rates[1, :-1] = np.where(drops, 1.0 / thickness[:-1], 1.0)
+        return np.where(self.paces.joint, self.paces.pace * rates[1] / rates[0], 1.0)
+
+    @cached_property
+    def paces(self) -> Paces:
+        """How the parameter runs through the stations."""
+        speeds = np.ones((2, len(self.knots))) if self.speeds is None else self.speeds
+        return Paces(self.knots, speeds, self.same)
 
     @cached_property
     def _pieces(self) -> tuple[Array, Array, Array]:
@@ -122,11 +133,11 @@ class SplinePath:
 
     def maps(self, M: Array, b: Array) -> "MapSpline":
         """Return the stations' affine maps, (s, 2, 2) and (s, 2), joined over the parameter."""
-        return MapSpline(self.easing, M, b, self.same)
+        return MapSpline(self.paces, M, b, self.same)
 
     def combined(self, q: Array) -> Combined:
         """Return the bases at parameters (k,) as combinations."""
-        k, fraction = self.easing(q)
+        k, fraction = self.paces(q)
         columns, products, turning = self._pieces
         drop = self._drops[k]
         follows = drop != 0.0
@@ -147,8 +158,8 @@ class MapSpline:
 
     Parameters
     ----------
-    easing : Easing
-        Parameter at the stations, and how it is slowed down beside them.
+    paces : Paces
+        Parameter at the stations, and how it runs through them.
     M : (s, 2, 2) array
         Linear maps with positive determinant.
     b : (s, 2) array
@@ -162,7 +173,7 @@ class MapSpline:
     three stations.  Where a stretch could come near a singular one, its slopes are reduced.
     """
 
-    easing: Easing
+    paces: Paces
     M: Array
     b: Array
     same: Mask
@@ -175,17 +186,19 @@ class MapSpline:
         angle, log_stretch = affine.polar(self.M)
         stretch = affine.from_polar(np.zeros(len(angle)), log_stretch)
         values = np.concatenate([np.unwrap(angle)[:, None], stretch.reshape(-1, 4), self.b], axis=1)
-        apart = np.diff(self.easing.knots)
-        slopes = three_point(apart, values)
-        slopes *= _reduced(stretch, slopes[:, 1:5].reshape(-1, 2, 2), apart)[:, None]
+        apart, pace = np.diff(self.paces.knots), self.paces.pace[:, None]
+        slopes = three_point(apart, values, self.paces.pace)
+        reach = np.maximum(np.insert(apart, 0, 0.0), np.append(apart, 0.0) / self.paces.pace)
+        slopes *= _reduced(stretch, slopes[:, 1:5].reshape(-1, 2, 2), reach)[:, None]
         still = self.same & (np.abs(np.diff(values, axis=0)).max(axis=1) <= NOISE)
         steps = np.where(still, 0.0, apart)[:, None]
-        cubic = _cubic(values[:-1], values[1:], steps * slopes[:-1], steps * slopes[1:])
+        leaving = (slopes / pace)[:-1]
+        cubic = _cubic(values[:-1], values[1:], steps * leaving, steps * slopes[1:])
         return np.stack(cubic, axis=-1)
 
     def __call__(self, q: Array) -> tuple[Array, Array]:
         """Return M (k, 2, 2) and b (k, 2) at parameters (k,)."""
-        k, t = self.easing(q)
+        k, t = self.paces(q)
         parts = (self._powers[k] @ (t[:, None] ** (3.0, 2.0, 1.0, 0.0))[..., None])[..., 0]
         turn = affine.from_polar(parts[..., 0], np.zeros((*q.shape, 2, 2)))
         return turn @ parts[..., 1:5].reshape(*q.shape, 2, 2), parts[..., 5:]
@@ -208,15 +221,14 @@ def _turning(X: Array, middle: Array, velocity: Array) -> Array:
     return rate
 
 
-def _reduced(stretch: Array, slopes: Array, apart: Array) -> Array:
+def _reduced(stretch: Array, slopes: Array, reach: Array) -> Array:
     """Return by how much slopes (s, 2, 2) are to be multiplied, at most 1, (s,).
 
     A cubic stays positive definite where its control values do: those beside a station are its
-    stretch and a third of the slope times the segment's length, to either side.
+    stretch and a third of the slope times the segment's length; `reach` is the longer one's, (s,).
     """
     root = np.linalg.inv(np.linalg.cholesky(stretch))
     relative = np.abs(np.linalg.eigvalsh(root @ slopes @ root.mT)).max(axis=-1) / 3.0
-    reach = relative * np.maximum(np.append(apart, 0.0), np.insert(apart, 0, 0.0))
     most = 1.0 - LEAST_STRETCH
-    factors: Array = most / np.maximum(reach, most)
+    factors: Array = most / np.maximum(relative * reach, most)
     return factors

@@ -117,7 +117,8 @@ class Paces:
     def joint(self) -> Mask:
         """Whether something moves on both sides of a station, (s,)."""
         before, after = self._moving
-        return before & after
+        joint: Mask = before & after
+        return joint
 
     @cached_property
     def pace(self) -> Array:

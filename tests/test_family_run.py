@@ -276,8 +276,11 @@ def test_runs_killed_while_they_write_files_leave_no_workers_and_go_on(command, 
     assert done["status"] == 0, done["err"]
     table = pq.read_table(target / "manifest.parquet").to_pydict()
     assert table["index"] == list(range(count))
+    made = [name != "" for name in table["glb_file"]]
+    assert sum(made) > count // 2
+    assert made == [problem == "" for problem in table["glb_problem"]]
     for name, digest in zip(table["glb_file"], table["glb_sha256"], strict=True):
-        assert digest_of(target / name) == digest
+        assert name == "" or digest_of(target / name) == digest
 
 
 def test_a_full_disk_is_one_line_and_the_run_goes_on(reference, command, tmp_path):

@@ -18,7 +18,6 @@ __all__ = ["Deviation", "Measured", "Offsets", "deviation", "measured", "watched
 PLACES = 800  # along the chord at least, and
 BETWEEN = 4  # from knot to knot
 SPANS = np.array([[0.2, 0.4, 0.62], [0.38, 0.6, 0.8]])  # and along the span, in turn
-QUARTERS = np.linspace(0.0, 1.0, 5)
 STRIP = np.arange(8) / 8.0  # of the way between sections, where the strip between them is measured
 CHUNK = 100_000  # points at once
 
@@ -149,8 +148,7 @@ def measured(net: SurfaceNet, blade: Blade) -> Measured:
         for face, some in zip(blade.sides, (u <= 0.5, u >= 0.5), strict=True)
     ]
     dense = Knots.simple(net.v).inside(STRIP)
-    few = blade.sections(dense, QUARTERS)  # an edge is finished where its section has some room
-    parts = *sides, _strip(net, few[:, [0, -1]], dense)
+    parts = *sides, _strip(net, blade.sections(dense)[:, [0, -1]], dense)
     between, whole = np.concatenate(volumes, axis=1) @ weights
     return Measured(v, u, found, np.concatenate(across), parts, float(between / whole))
 

@@ -199,8 +199,8 @@ def test_check_makes_a_definition_as_it_is_told_and_takes_files_as_they_are(tmp_
     assert jumps[1]["curvature_jump_per_m"] < 0.2 * jumps[0]["curvature_jump_per_m"]
     (tmp_path / "one.stl").write_text("solid\nendsolid\n")
     for words, said in (
-        ((str(tmp_path / "one.stl"), "--path", "spline"), "is no definition"),
-        (("dtu10mw", "nrel5mw", "--path", "spline"), "made as the other one was"),
+        ((str(tmp_path / "one.stl"), "--path", "geodesic"), "is no definition"),
+        (("dtu10mw", "nrel5mw", "--path", "geodesic"), "made as the other one was"),
     ):
         assert said in str(checked(*words).exception)
 

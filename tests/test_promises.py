@@ -104,7 +104,7 @@ def test_the_nrel_5_mw_s_root_is_a_circle_to_fewer_digits_than_the_tolerance_has
 
 
 @pytest.mark.parametrize(
-    ("name", "at", "share"), [("iea15mw", 0.21, 2.6e-3), ("nrel5mw", 0.14, 9e-4)]
+    ("name", "at", "share"), [("iea15mw", 0.22, 1.2e-3), ("nrel5mw", 0.14, 6.8e-4)]
 )
 def test_smooth_paths_overshoot_widths_as_the_page_says(name, at, share):
     made = bg.Blade.from_definition(bg.read(name), path="spline")
@@ -230,4 +230,4 @@ def test_modes_move_the_edge_s_width_by_no_more_than_the_page_says(name, share):
     anything = {"allow_extrapolation": True, "allow_odd": True}
     variants = [made.perturbed(space, t, **anything) for end in ends for t in np.diag(end)]
     moved = [np.abs(edge_widths(v, eta) - edge_widths(made, eta)).max() for v in variants]
-    assert 0.9 * share < max(moved) < 1.01 * share
+    assert 0.9 * share < max(moved) < 1.025 * share

@@ -468,10 +468,10 @@ def test_a_state_that_cannot_be_made_is_said_and_taken_back(opened, monkeypatch)
 def test_a_blade_that_cannot_be_prepared_is_said_and_not_picked(opened, monkeypatch):
     made = Library.baseline
 
-    def refusing(library, key):
+    def refusing(library, key, *path):
         if key == "dtu10mw":
             raise StudioError("its file is gone")
-        return made(library, key)
+        return made(library, key, *path)
 
     monkeypatch.setattr(Library, "baseline", refusing)
     tab = opened("?blade=dtu10mw&twist=1")

@@ -7,7 +7,7 @@ from bladegen.support.arrays import Array
 
 __all__ = ["crossing_sections", "first_crossing"]
 
-TOUCHING = 1e-14  # chord^2, twice a triangle's area: closed edges meet to rounding only
+TOUCHING = 1e-12  # chord^2, twice a triangle's area: edges that close are nearer than 1e-9 chord
 RUN = 16  # segments in a run, whose boxes are compared first
 CHUNK = 2_000  # pairs of runs tested at once: bounds memory to some tens of megabytes
 

@@ -122,14 +122,18 @@ def _path(page: Page) -> None:
     """Put the choice of how stations are joined."""
     from nicegui import ui
 
-    with ui.element("div").classes("choice"):
+    choices = {}
+    with ui.element("div").classes("choice").props('role=group aria-label="Path"'):
         ui.label("Path").tooltip("How stations are joined: smoothly, or by the paper's geodesics")
-        choice = ui.toggle(JOINED, value=page.state.path)
-        choice.props('dense no-caps unelevated size=12px aria-label="Path"')
-    choice.on_value_change(lambda event: page.join(event.value))
+        ui.element("span")
+        for path, words in JOINED.items():
+            button = ui.button(words, color=None, on_click=lambda path=path: page.join(path))
+            button.props(f'flat dense no-caps size=12px padding="2px 8px" aria-label="{words}"')
+            choices[path] = button
 
     def follow() -> None:
-        choice.set_value(page.state.path)
+        for path, button in choices.items():
+            button.props(f"aria-pressed={str(path == page.state.path).lower()}")
 
     page.followers.append(follow)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from bladegen.blade.crowding import Crowding
 from bladegen.blade.edges import PAIRWISE
-from bladegen.blade.spans import both_sides, landmarks_at, span_fractions
+from bladegen.blade.spans import both_sides, grid_points, landmarks_at, span_fractions
 from bladegen.errors import DefinitionError, GeometryError
 from bladegen.support.arguments import whole
 from bladegen.support.arrays import Array, ArrayLike, Indices
@@ -139,22 +139,9 @@ def breaks(blade: Any) -> Array:
     They are the stations and the grid points of all distributions: chord, twist, offsets, axis,
     thickness and the coordinates of deformations.
     """
-    definition = blade.definition
-    axis = definition.axis
-    given = (
-        definition.chord,
-        definition.twist,
-        definition.section_offset_x,
-        definition.section_offset_y,
-        definition.pitch_axis,
-        definition.relative_thickness,
-        axis.x,
-        axis.y,
-        axis.z,
-        *(deformation.t for deformation in blade.deformations),
-    )
-    grids = [quantity.grid for quantity in given if quantity is not None]
-    return np.unique(np.clip(np.concatenate([[0.0, 1.0], blade.eta, *grids]), 0.0, 1.0))
+    coordinates = [deformation.t.grid for deformation in blade.deformations]
+    points = [[0.0, 1.0], blade.eta, grid_points(blade.definition), *coordinates]
+    return np.unique(np.clip(np.concatenate(points), 0.0, 1.0))
 
 
 def volume(blade: Any) -> float:

@@ -2,11 +2,20 @@
 
 import numpy as np
 
+from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import DefinitionError
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array, ArrayLike, Indices, readonly
 
-__all__ = ["MIRROR", "around", "both_sides", "landmarks_at", "reflected", "span_fractions"]
+__all__ = [
+    "MIRROR",
+    "around",
+    "both_sides",
+    "grid_points",
+    "landmarks_at",
+    "reflected",
+    "span_fractions",
+]
 
 MIRROR = readonly([1.0, -1.0, 1.0])
 
@@ -58,3 +67,23 @@ def reflected(sections: Array) -> Array:
     """Return the mirror image in y of sections (..., n, 3), which goes round the same way."""
     image: Array = sections[..., ::-1, :] * MIRROR.astype(sections.dtype)
     return image
+
+
+def grid_points(definition: BladeDefinition) -> Array:
+    """Return the grid points of a definition's distributions, in no order, some many times.
+
+    They are those of chord, twist, offsets, axis and thickness.
+    """
+    axis = definition.axis
+    given = (
+        definition.chord,
+        definition.twist,
+        definition.section_offset_x,
+        definition.section_offset_y,
+        definition.pitch_axis,
+        definition.relative_thickness,
+        axis.x,
+        axis.y,
+        axis.z,
+    )
+    return np.concatenate([quantity.grid for quantity in given if quantity is not None])

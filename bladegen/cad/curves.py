@@ -17,7 +17,7 @@ from bladegen.cad.shapes import MILLIMETRES
 from bladegen.cad.solids import Solid
 from bladegen.cad.step_documents import Part, Place
 from bladegen.support.arrays import Array
-from bladegen.surface.net import CLOSED_EDGE, SurfaceNet
+from bladegen.surface.net import SurfaceNet
 from bladegen.surface.regions import COLOURS, EDGE, ROOT, SUCTION, TIP
 from bladegen.surface.splines import DEGREE
 
@@ -44,7 +44,7 @@ def curves(solid: Solid, blade: Blade) -> list[Part]:
     """Return a blade's curves as named wires [mm]: stations from the root on, edges, axes."""
     net = solid.net
     first, second = net.halves()
-    blunt = bool(np.linalg.norm(net.poles[0] - net.poles[-1], axis=-1).max() > CLOSED_EDGE)
+    blunt = net.blunt
     parts = [
         _part(f"station {number}, eta {eta:.4f}", _loop(first, second, eta, blunt), ROOT)
         for number, eta in enumerate(blade.eta.tolist(), start=1)

@@ -137,9 +137,7 @@ def solid(
         deviation.eta,
         deviation.rms * MILLIMETRES,
     )
-    gap = np.linalg.norm(net.poles[0] - net.poles[-1], axis=-1)
-    blunt = bool(gap.max() > CLOSED_EDGE)
-    if blunt and gap.min() <= CLOSED_EDGE:
+    if net.blunt and net.gaps.min() <= CLOSED_EDGE:
         raise CadError(
             f"{blade.name}: the trailing edge is sharp at some spans and blunt at others; give "
             "it a minimum thickness or make it sharp everywhere"
@@ -148,7 +146,7 @@ def solid(
     poles = net.poles * MILLIMETRES
     poles[:, 1:-1] = np.round(poles[:, 1:-1], DIGITS)  # root and tip stay in their planes
     scaled = replace(net, poles=poles)
-    faces = _faces(scaled, blade.sides, blunt, tip, split)
+    faces = _faces(scaled, blade.sides, net.blunt, tip, split)
     shape, named = _closed(faces, blade.name)
     return Solid(shape, named, net, deviation, tip_volume(net, tip), blade.name)
 

@@ -7,7 +7,6 @@ extras of glTF, metadata of 3MF, VTK, PNG and workbooks.  CGNS gets its descript
 (`grid_files`).  PLOT3D has no place; the report lists its files as all others.
 """
 
-import io
 import json
 import re
 import struct
@@ -21,6 +20,7 @@ from pathlib import Path
 from bladegen.exports import picture_marks
 from bladegen.exports.provenance import NAME, Provenance
 from bladegen.exports.text_marks import Put, commented, named_columns, titled
+from bladegen.support.archive import rewritten
 from bladegen.support.files import beginning_of, end_of, replacing
 
 __all__ = ["marked", "put", "read"]
@@ -139,15 +139,7 @@ def _in_zip(member: str, change: Callable[[bytes, Provenance], bytes]) -> Put:
     """Return what changes one member of a zip file and keeps all else, times included."""
 
     def changed(content: bytes, made: Provenance) -> bytes:
-        result = io.BytesIO()
-        with (
-            zipfile.ZipFile(io.BytesIO(content)) as old,
-            zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as new,
-        ):
-            for info in old.infolist():
-                data = old.read(info)
-                new.writestr(info, change(data, made) if info.filename == member else data)
-        return result.getvalue()
+        return rewritten(content, lambda name, data: change(data, made) if name == member else data)
 
     return changed
 

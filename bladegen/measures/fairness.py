@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.spans import grid_points
 from bladegen.measures import smoothness
 from bladegen.support.arrays import Array
 
@@ -118,21 +119,8 @@ def _normals(blade: Blade, eta: Array, u: Array, slope: Array) -> Array:
 
 def _breaks(blade: Blade) -> Array:
     """Return the inner span fractions at which distributions, stations and planes have points."""
-    definition = blade.definition
-    axis = definition.axis
-    quantities = (
-        definition.chord,
-        definition.twist,
-        definition.section_offset_y,
-        definition.section_offset_x,
-        definition.pitch_axis,
-        definition.relative_thickness,
-        axis.x,
-        axis.y,
-        axis.z,
-    )
-    grids = [quantity.grid for quantity in quantities if quantity is not None]
-    places = np.unique(np.concatenate([*grids, blade.eta, [blade.planform.frames.root]]))
+    given = grid_points(blade.definition), blade.eta, [blade.planform.frames.root]
+    places = np.unique(np.concatenate(given))
     places = places[(places > APART) & (places < 1.0 - APART)]
     kept: Array = places[np.insert(np.diff(places) > APART, 0, True)] if len(places) else places
     return kept

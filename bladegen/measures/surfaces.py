@@ -18,7 +18,7 @@ from bladegen.support.arrays import Array, Indices
 from bladegen.surface.ends import edge_poles, rounded
 from bladegen.surface.fitting import resolving
 from bladegen.surface.mesh import TriangleMesh
-from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet, on_knots
+from bladegen.surface.net import BEZIER, SurfaceNet, on_knots
 from bladegen.surface.splines import DEGREE, Knots
 from bladegen.surface.tips import Tip, flat_tip
 
@@ -108,8 +108,7 @@ def of_blade(blade: Blade, tip: Tip = flat_tip) -> Surface:
     """Return a blade's surface, from which the blade departs by some micrometres."""
     net, sign = _net(blade), 1.0 if blade.mirrored else -1.0
     pieces: list[_Piece] = [(Patch(net.poles, net.u_knots, net.v_knots, sign=sign), None)]
-    blunt = float(np.linalg.norm(net.poles[0] - net.poles[-1], axis=-1).max()) > CLOSED_EDGE
-    if blunt:
+    if net.blunt:
         strip = np.stack([net.poles[-1], net.poles[0]])
         pieces.append((Patch(strip, _LINEAR, net.v_knots, sign=sign), None))
     pieces.append(_flat(net, 0.0))
@@ -118,7 +117,7 @@ def of_blade(blade: Blade, tip: Tip = flat_tip) -> Surface:
         pieces.append(_flat(net, 1.0))
     else:
         pieces.append((Patch(poles, net.halves()[0].u_knots, BEZIER, sign=sign), None))
-        if blunt:
+        if net.blunt:
             pieces.append((Patch(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER, sign=sign), None))
     return _joined(pieces)
 

@@ -19,6 +19,7 @@ __all__ = [
     "from_polar",
     "polar",
     "restore",
+    "rotation",
     "standardise",
     "thickness",
     "twist",
@@ -122,11 +123,11 @@ def polar(M: Array) -> tuple[Array, Array]:
 
 def from_polar(angle: Array, log_stretch: Array) -> Array:
     """Return R(angle) @ exp(log_stretch), the inverse of `polar`; never singular."""
-    M: Array = _rotation(angle) @ exp(log_stretch)
+    M: Array = rotation(angle) @ exp(log_stretch)
     return M
 
 
-def _rotation(angle: Array) -> Array:
+def rotation(angle: Array) -> Array:
     """Return [[cos, -sin], [sin, cos]], shape (..., 2, 2)."""
     c, s = np.cos(angle), np.sin(angle)
     result: Array = np.empty((*c.shape, 2, 2))
@@ -158,7 +159,7 @@ def twist(angle: Array) -> Array:
     Acting on rows from the right it turns shapes clockwise for positive angles, which is
     leading edge up: nose toward the suction side.
     """
-    return _rotation(angle)
+    return rotation(angle)
 
 
 def _diagonal(a: Array, d: Array) -> Array:

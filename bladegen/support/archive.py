@@ -1,4 +1,4 @@
-"""Arrays on disk: npz files with a format version and a checksum.
+"""Zip archives: npz files of arrays with a format version and a checksum, and members changed.
 
 Nothing in such a file is executed: plain arrays and text only.
 """
@@ -9,7 +9,7 @@ import struct
 import tokenize
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from bladegen.errors import FileError, SpaceError
 from bladegen.support.arrays import Array
 from bladegen.support.files import content_of, replacing
 
-__all__ = ["checksum", "load_arrays", "save_arrays"]
+__all__ = ["checksum", "load_arrays", "rewritten", "save_arrays"]
 
 VERSION = 2  # 1: each side was divided by arc length for itself
 MAX_BYTES = 200 * 2**20  # of the file, and of what it unpacks to
@@ -89,3 +89,12 @@ def checksum(arrays: dict[str, Array], about: str) -> str:
         digest.update(f"{name} {array.shape} {array.dtype.str}".encode())
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()
+
+
+def rewritten(package: bytes, change: Callable[[str, bytes], bytes]) -> bytes:
+    """Return a zip file whose members' contents are changed, by their names; all else is kept."""
+    result = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(package)) as old, zipfile.ZipFile(result, "w") as new:
+        for info in old.infolist():
+            new.writestr(info, change(info.filename, old.read(info)))
+    return result.getvalue()

@@ -16,6 +16,7 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import FileError
+from bladegen.support.archive import rewritten
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.mesh import SECTIONS, TriangleMesh, from_blade
 from bladegen.surface.regions import COLOURS, REGIONS
@@ -69,33 +70,28 @@ def with_materials(package: bytes, mesh: TriangleMesh, name: str) -> bytes:
         for region, colour in COLOURS.items()
     )
     number = iter(mesh.regions.tolist())
-    result = io.BytesIO()
-    with (
-        zipfile.ZipFile(io.BytesIO(package)) as old,
-        zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as new,
-    ):
-        for info in old.infolist():
-            data = old.read(info)
-            if info.filename == MODEL:
-                materials = f'<resources><basematerials id="{MATERIALS}">{bases}</basematerials>'
-                data = data.replace(b"<resources>", materials.encode(), 1)
-                title = escape(name, {'"': "&quot;"}).encode("ascii", "xmlcharrefreplace")
-                told = b'name="%s" pid="%d" pindex="0"' % (title, MATERIALS)
-                data = data.replace(b'name="geometry_0"', told, 1)
-                data = re.sub(
-                    rb'(<triangle v1="\d+" v2="\d+" v3="\d+")',
-                    lambda found: found[1] + b' pid="%d" p1="%d"' % (MATERIALS, next(number)),
-                    data,
-                )
-            new.writestr(info, data)
-    return result.getvalue()
+
+    def changed(member: str, data: bytes) -> bytes:
+        if member != MODEL:
+            return data
+        materials = f'<resources><basematerials id="{MATERIALS}">{bases}</basematerials>'
+        data = data.replace(b"<resources>", materials.encode(), 1)
+        title = escape(name, {'"': "&quot;"}).encode("ascii", "xmlcharrefreplace")
+        told = b'name="%s" pid="%d" pindex="0"' % (title, MATERIALS)
+        data = data.replace(b'name="geometry_0"', told, 1)
+        return re.sub(
+            rb'(<triangle v1="\d+" v2="\d+" v3="\d+")',
+            lambda found: found[1] + b' pid="%d" p1="%d"' % (MATERIALS, next(number)),
+            data,
+        )
+
+    return rewritten(package, changed)
 
 
 def with_steady_ids(package: bytes) -> bytes:
     """Return a 3MF file with identifiers that follow from its content, instead of random ones."""
     with zipfile.ZipFile(io.BytesIO(package)) as archive:
-        members = [(info, archive.read(info)) for info in archive.infolist()]
-    plain = b"".join(_UUID.sub(b"", content) for _, content in members)
+        plain = b"".join(_UUID.sub(b"", archive.read(info)) for info in archive.infolist())
     seed = hashlib.sha256(plain).hexdigest()
     known: dict[bytes, bytes] = {}
 
@@ -104,11 +100,7 @@ def with_steady_ids(package: bytes) -> bytes:
         known.setdefault(found[0], str(uuid.uuid5(uuid.NAMESPACE_OID, name)).encode())
         return known[found[0]]
 
-    result = io.BytesIO()
-    with zipfile.ZipFile(result, "w") as archive:
-        for info, content in members:
-            archive.writestr(info, _UUID.sub(steady, content))
-    return result.getvalue()
+    return rewritten(package, lambda _, content: _UUID.sub(steady, content))
 
 
 _UUID = re.compile(rb"(?<=UUID=\")[0-9a-fA-F-]{36}(?=\")")

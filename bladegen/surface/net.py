@@ -80,6 +80,17 @@ class SurfaceNet:
         creases: Array = v[times == DEGREE]
         return creases
 
+    @property
+    def gaps(self) -> Array:
+        """Widths [m] of the trailing edge's strip, between its poles, (b,)."""
+        gaps: Array = np.linalg.norm(self.poles[0] - self.poles[-1], axis=-1)
+        return gaps
+
+    @property
+    def blunt(self) -> bool:
+        """Whether the trailing edge is open somewhere."""
+        return bool(self.gaps.max() > CLOSED_EDGE)
+
     def evaluate(self, u: Array, v: Array, nu: int = 0, nv: int = 0) -> Array:
         """Return points, or mixed derivatives, on the grid of `v` and `u`, (kv, ku, 3).
 

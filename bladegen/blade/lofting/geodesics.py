@@ -15,7 +15,7 @@ from bladegen.shapes import affine, grassmann
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.values import brief
 
-__all__ = ["GeodesicPath", "SectionSpline"]
+__all__ = ["SAME_SHAPE", "GeodesicPath", "SectionSpline"]
 
 SAME_SHAPE = 1e-12  # rad; neighbours closer than this are one shape, constant between them
 

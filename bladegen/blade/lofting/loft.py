@@ -96,7 +96,7 @@ class Loft:
         # A representative's rotation is moved to the tip's M first, so that no result
         # depends on which representatives there are.
         angle, _ = affine.polar(self.M[-1:])
-        turn = affine.from_polar(angle, np.zeros((1, 2, 2)))
+        turn = affine.rotation(angle)
         path, M = self.path(self.parameter, self.representatives @ turn, turn.mT @ self.M)
         return path, path.maps(M, self.b)
 

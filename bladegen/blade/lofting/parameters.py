@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bladegen.blade.lofting.combined import segments
 from bladegen.definition.blade_definition import Distribution
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.values import brief
@@ -76,7 +77,7 @@ class Parameter:
     def __call__(self, eta: Array) -> Array:
         """Return q at span fractions `eta`; constant beyond the first and last station."""
         thickness, follows = self._ends
-        k = np.clip(np.searchsorted(self.stations, eta, side="right") - 1, 0, len(follows) - 1)
+        k = segments(self.stations, eta)
         start, end = self.stations[k], self.stations[k + 1]
         fraction = (eta - start) / (end - start)
         if self.relative_thickness is not None:

@@ -11,15 +11,17 @@ from functools import cached_property
 import numpy as np
 
 from bladegen.blade.lofting.combined import Combined
+from bladegen.blade.lofting.geodesics import SAME_SHAPE
 from bladegen.blade.lofting.velocities import Paces, blended, three_point
+from bladegen.curves.cubics import pieces
 from bladegen.shapes import affine, grassmann
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.values import brief
 
 __all__ = ["MapSpline", "SplinePath"]
 
-SAME_SHAPE = 1e-12  # rad; neighbours closer than this are one shape
 NOISE = 2e-4  # rad; equally thick neighbours closer than this are told apart by their digits alone
+POWERS = np.arange(4.0)  # of a segment's fraction, as `curves.cubics.pieces` has them
 LEAST_STRETCH = 0.1  # of a station's; how far the splines' control values of it may go down
 
 
@@ -71,17 +73,20 @@ class SplinePath:
         return np.where(self._drops != 0.0, logarithm, np.diff(self.knots))
 
     @cached_property
+    def _steps(self) -> Array:
+        return grassmann.log(self.X[:-1], self.X[1:])
+
+    @cached_property
     def same(self) -> Mask:
         """Which segments join identical shapes, (s - 1,)."""
-        apart = grassmann.norm(grassmann.log(self.X[:-1], self.X[1:]))
+        apart = grassmann.norm(self._steps)
         return apart <= np.where(self._drops != 0.0, SAME_SHAPE, NOISE)
 
     @cached_property
     def velocities(self) -> tuple[Array, Array]:
         """Tangent vectors at the stations just before and just after them, (s, n, 2) each."""
         lengths, X, pace = self._lengths[:, None, None], self.X, self._pace
-        leaving, arriving = grassmann.log(X[:-1], X[1:]), -grassmann.log(X[1:], X[:-1])
-        before, after = arriving / lengths, leaving / lengths
+        before, after = -grassmann.log(X[1:], X[:-1]) / lengths, self._steps / lengths
         further = grassmann.transport(after[1:], X[1:-1], X[:-2])
         earlier = grassmann.transport(before[:-1], X[1:-1], X[2:])
         velocities = blended(before, after, earlier, further, pace)
@@ -111,13 +116,12 @@ class SplinePath:
     def _pieces(self) -> tuple[Array, Array, Array]:
         """Columns of the segments (s - 1, 10, n), products (s - 1, 8, 8), turning (s - 1, 2)."""
         X, lengths = self.X, self._lengths[:, None, None]
-        step = grassmann.log(X[:-1], X[1:])
-        middle = grassmann.exp(X[:-1], 0.5 * step)
+        middle = grassmann.exp(X[:-1], 0.5 * self._steps)
         end = grassmann.log(middle, X[1:])
         arriving, leaving = self.velocities[0][1:], self.velocities[1][:-1]
         start_rate = lengths * grassmann.log_rate(middle, X[:-1], leaving)
         end_rate = lengths * grassmann.log_rate(middle, X[1:], arriving)
-        powers = np.stack(_cubic(-end, end, start_rate, end_rate), axis=1)
+        powers = np.stack(pieces(-end, end, start_rate, end_rate), axis=1)
         rows = powers.mT.reshape(len(X) - 1, 8, -1)
         turning = [
             _turning(X[:-1], middle, lengths * leaving),
@@ -143,13 +147,13 @@ class SplinePath:
         follows = drop != 0.0
         run = np.log1p(fraction * drop) / np.where(follows, np.log1p(drop), 1.0)
         t = np.where(follows & (fraction < 1.0), run, fraction)
-        powers = t[:, None] ** (3.0, 2.0, 1.0, 0.0)
+        powers = t[:, None] ** POWERS
         scale = (powers[:, :, None, None] * np.eye(2)).reshape(len(q), 8, 2)
         cosine, sinc = grassmann.exp_factors(scale.mT @ (products[k] @ scale))
         away = t * (1.0 - t)
         angle = -away * (turning[k, 0] * (1.0 - t) - turning[k, 1] * t)
         weights = np.concatenate([cosine, scale @ sinc], axis=1)
-        return Combined(columns, k, weights @ affine.from_polar(angle, np.zeros((len(q), 2, 2))))
+        return Combined(columns, k, weights @ affine.rotation(angle))
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,21 +197,15 @@ class MapSpline:
         still = self.same & (np.abs(np.diff(values, axis=0)).max(axis=1) <= NOISE)
         steps = np.where(still, 0.0, apart)[:, None]
         leaving = (slopes / pace)[:-1]
-        cubic = _cubic(values[:-1], values[1:], steps * leaving, steps * slopes[1:])
+        cubic = pieces(values[:-1], values[1:], steps * leaving, steps * slopes[1:])
         return np.stack(cubic, axis=-1)
 
     def __call__(self, q: Array) -> tuple[Array, Array]:
         """Return M (k, 2, 2) and b (k, 2) at parameters (k,)."""
         k, t = self.paces(q)
-        parts = (self._powers[k] @ (t[:, None] ** (3.0, 2.0, 1.0, 0.0))[..., None])[..., 0]
-        turn = affine.from_polar(parts[..., 0], np.zeros((*q.shape, 2, 2)))
+        parts = (self._powers[k] @ (t[:, None] ** POWERS)[..., None])[..., 0]
+        turn = affine.rotation(parts[..., 0])
         return turn @ parts[..., 1:5].reshape(*q.shape, 2, 2), parts[..., 5:]
-
-
-def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, ...]:
-    """Return the coefficients of t^3, t^2, t and 1 on [0, 1], by ends and slopes there."""
-    step = end - start
-    return leaving + arriving - 2.0 * step, 3.0 * step - 2.0 * leaving - arriving, leaving, start
 
 
 def _turning(X: Array, middle: Array, velocity: Array) -> Array:

@@ -19,8 +19,11 @@ from bladegen.formats.common.document import FRACTION, Node, Notes, Range
 __all__ = [
     "ARC",
     "DEEPEST",
+    "END",
     "HELD",
+    "MIDDLE",
     "OFFSET",
+    "START",
     "WIDTH",
     "assembled",
     "curve",
@@ -30,6 +33,7 @@ __all__ = [
     "whole",
 ]
 
+START, MIDDLE, END = "start_nd_arc", "midpoint_nd_arc", "end_nd_arc"  # of a region of the skin
 ARC = Range(-1.0, 2.0, "of the arc")
 OFFSET = Range(-100.0, 100.0, "m")
 WIDTH = Range(0.0, 100.0, "m")

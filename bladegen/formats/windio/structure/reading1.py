@@ -26,11 +26,11 @@ from bladegen.definition.structure.positions import (
 from bladegen.definition.structure.structure import NOTHING, Layer, Stated, Structure, Web
 from bladegen.formats.common.document import Node, Notes, Range
 from bladegen.formats.windio.structure import parts
+from bladegen.formats.windio.structure.parts import END, MIDDLE, START
 
 __all__ = ["read"]
 
 TURN = Range(-np.pi, np.pi, "rad")
-START, MIDDLE, END = "start_nd_arc", "midpoint_nd_arc", "end_nd_arc"
 EDGES = {START: 0.0, END: 1.0}
 Places = tuple[Position, Position]
 

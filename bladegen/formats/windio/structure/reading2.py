@@ -27,12 +27,12 @@ from bladegen.definition.structure.positions import (
 from bladegen.definition.structure.structure import Layer, Structure, Web
 from bladegen.formats.common.document import FRACTION, Node, Notes, Range
 from bladegen.formats.windio.structure import parts
+from bladegen.formats.windio.structure.parts import END, MIDDLE, START
 
 __all__ = ["read"]
 
 DEGREE = np.pi / 180.0
 TURN = Range(-180.0, 180.0, "deg")
-START, MIDDLE, END = "start_nd_arc", "midpoint_nd_arc", "end_nd_arc"
 OTHER = {START: END, END: START}
 SIDE = {START: "suction", END: "pressure"}
 Known = tuple[Position | None, Distribution | None]

@@ -4,7 +4,7 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.definition.distribution import Distribution
 from bladegen.definition.structure.positions import LEADING_EDGE, Arc, PlaneCut, Position
 from bladegen.definition.structure.structure import Layer, Web
-from bladegen.formats.windio.structure.parts import whole
+from bladegen.formats.windio.structure.parts import END, MIDDLE, START, whole
 from bladegen.formats.windio.structure.written import (
     EDGES,
     Strip,
@@ -16,8 +16,6 @@ from bladegen.formats.windio.structure.written import (
 from bladegen.formats.windio.writing import Document, Note, axis, pairs
 
 __all__ = ["document"]
-
-START, MIDDLE, END = "start_nd_arc", "midpoint_nd_arc", "end_nd_arc"
 
 
 def document(definition: BladeDefinition, note: Note) -> tuple[Document, list[Document]] | None:

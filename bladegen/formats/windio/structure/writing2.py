@@ -14,6 +14,7 @@ from bladegen.definition.structure.positions import (
     Shifted,
 )
 from bladegen.definition.structure.structure import Layer, Web
+from bladegen.formats.windio.structure.parts import END, MIDDLE, START
 from bladegen.formats.windio.structure.written import (
     EDGES,
     Written,
@@ -27,7 +28,6 @@ __all__ = ["document"]
 
 DEGREES = 180.0 / np.pi
 FLAT = 1e-6  # rad, by which the rotation of a plane may vary over span
-START, MIDDLE, END = "start_nd_arc", "midpoint_nd_arc", "end_nd_arc"
 Reference = tuple[str, str]
 
 

@@ -21,7 +21,7 @@ from bladegen.definition.structure.positions import (
     extent_of,
 )
 from bladegen.definition.structure.structure import Axes, Layer, Material, Web
-from bladegen.formats.windio.structure.parts import HELD, whole
+from bladegen.formats.windio.structure.parts import END, HELD, START, whole
 from bladegen.formats.windio.writing import Document, Note, pairs
 from bladegen.support.arrays import Array
 
@@ -30,7 +30,7 @@ __all__ = ["EDGES", "Strip", "Written", "extents", "materials", "strip_of"]
 STRAIGHT = 1e-9  # m, of an axis from a line
 POINTS = 41  # of fractions over span, where the file gave none
 LANDMARKS = 401
-EDGES = {whole(0.0): "start_nd_arc", whole(1.0): "end_nd_arc"}  # the trailing edge, by its handle
+EDGES = {whole(0.0): START, whole(1.0): END}  # the trailing edge, by its handle
 
 
 @dataclass(frozen=True)

@@ -202,14 +202,25 @@ def test_a_slider_moves_the_picture_and_the_numbers(opened):
     assert label.startswith("Section at 50 % of the span")
 
 
-def test_the_paper_s_path_is_one_press_away(opened):
+@pytest.mark.parametrize(
+    ("press", "key", "value"),
+    [
+        ("Geodesics", "path", "geodesic"),
+        ("Fair", "fair", "yes"),
+    ],
+)
+def test_how_the_blade_is_made_is_one_press_away(opened, press, key, value):
     tab = opened()
     before = count(tab)
-    tab.get_by_role("button", name="Geodesics").click()
-    holds(tab, path="geodesic")
+    button = tab.get_by_role("button", name=press, exact=True)
+    button.click()
+    holds(tab, **{key: value})
     drawn(tab, before + 1)
+    tab.wait_for_function(
+        "b => b.getAttribute('aria-pressed') === 'true'", arg=button.element_handle()
+    )
     tab.keyboard.press("Control+z")
-    holds(tab, path=None)
+    holds(tab, **{key: None})
 
 
 def test_typed_numbers_undo_redo_and_reset(opened):

@@ -8,8 +8,10 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cli import commands
+from bladegen.cli.options.fairing import planform_fairing
 from bladegen.measures import checks
-from bladegen.studio.library import Entry
+from bladegen.studio.library import Entry, Library
+from bladegen.studio.loft import Loft
 from bladegen.studio.model import Baseline
 from bladegen.studio.recipes import python, shell
 from bladegen.studio.state import State
@@ -17,7 +19,7 @@ from bladegen.studio.state import State
 ENTRY = Entry("nrel5mw", "nrel5mw", "nrel5mw", "nrel5mw")
 MOVED = State("nrel5mw", (-0.03, 0.0, 0.01, -0.005), (0.1, 0.3), 1.05, 0.98, 1.1, -1.5, 0.5)
 STATES = [State("nrel5mw"), MOVED, replace(MOVED, t=(0.0,) * 4, window=None)]
-GEODESIC = State("nrel5mw", path="geodesic")
+GEODESIC = State("nrel5mw", loft=Loft("geodesic", fair=True))
 
 
 @pytest.fixture(scope="module")
@@ -38,10 +40,24 @@ def test_the_script_makes_the_same_blade(baseline, state, monkeypatch):
     assert blade.name == baseline.stem(state)
 
 
-def test_the_paper_s_path_is_in_the_script_and_the_command():
-    assert ', path="geodesic")' in python(GEODESIC, ENTRY, "x").replace("'", '"')
+def test_how_the_blade_is_made_is_in_the_script_and_the_command():
+    script = python(GEODESIC, ENTRY, "x").replace("'", '"')
+    assert ', path="geodesic", fair_planform=bg.PlanformFairing())' in script
     words = shlex.split(shell(GEODESIC, ENTRY, "x"))
     assert words[words.index("--path") + 1] == "geodesic"
+    asked = words[words.index("--fair-planform") + 1]
+    assert planform_fairing(asked, "fair-planform") == bg.PlanformFairing()
+
+
+@pytest.mark.parametrize("loft", [Loft(), GEODESIC.loft])
+def test_the_script_makes_the_blade_that_is_shown(loft, tmp_path, monkeypatch):
+    state = replace(STATES[0], loft=loft)
+    shown = Library(tmp_path).baseline("nrel5mw", loft).variant(state)
+    written = []
+    monkeypatch.setattr(bg, "export", lambda blade, path: written.append(blade))
+    exec(compile(python(state, ENTRY, "x"), "recipe", "exec"), {})
+    eta = np.linspace(0.0, 1.0, 12)
+    assert_allclose(written[0].sections(eta), shown.sections(eta), rtol=0, atol=0)
 
 
 def test_the_command_makes_the_same_blade(baseline, tmp_path):

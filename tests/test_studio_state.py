@@ -9,6 +9,7 @@ from bladegen.blade.lofting.paths import PATHS
 from bladegen.errors import StudioError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.controls import AFFINE, AT, controls
+from bladegen.studio.loft import Loft
 from bladegen.studio.state import History, State, from_query, to_query
 from strategies import few
 
@@ -27,7 +28,7 @@ def states(draw):
     t = tuple(draw(on_grid(KNOWN[f"t{k + 1}"])) for k in range(SPACE.dimension))
     window = draw(st.none() | st.tuples(*[on_grid(KNOWN["start"])] * 2).map(sorted).map(tuple))
     rest = {control.name: draw(on_grid(control)) for control in (*AFFINE, AT)}
-    rest["path"] = draw(st.sampled_from(list(PATHS)))
+    rest["loft"] = Loft(draw(st.sampled_from(list(PATHS))), draw(st.booleans()))
     return State(draw(st.sampled_from(["iea15mw", "my-blade-0123"])), t, window, **rest)
 
 
@@ -54,6 +55,7 @@ def test_the_shortest_link_names_the_blade_alone():
         ("window=0.5", "must be two span fractions"),
         ("window=0.5,0.2", "got 0.5 to 0.2, must rise"),
         ("path=straight", "path: got 'straight', allowed are spline, geodesic"),
+        ("fair=no", "link: fair: got 'no', allowed is yes"),
         ("start=0.5", "'start' is unknown"),
         ("<script>=1", "is unknown, allowed are blade, t, window"),
         ("at=" + "1" * 3000, "allowed are 2000"),

@@ -14,8 +14,6 @@ from shutil import rmtree
 from tempfile import TemporaryDirectory
 from threading import Lock
 
-from bladegen.blade.blade import Blade
-from bladegen.blade.lofting.paths import DEFAULT, PATHS
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import FileError, StudioError, visible
 from bladegen.exports.inventory import REPORT
@@ -29,6 +27,7 @@ from bladegen.formats.qblade import reading as qblade
 from bladegen.formats.reading import SUFFIXES, holds_blade, read
 from bladegen.formats.registry import FORMATS
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.studio.loft import PLAIN, Loft
 from bladegen.studio.model import Baseline
 from bladegen.support.files import safe_stem
 
@@ -76,7 +75,7 @@ class Library:
         self._lock = Lock()
         self._entries = {name: Entry(name, name, name, name) for name in bundled()}
         self._uploads: list[str] = []
-        self._baselines: dict[tuple[str, str], Baseline] = {}
+        self._baselines: dict[tuple[str, Loft], Baseline] = {}
         self._space: ShapeSpace | None = None
 
     @property
@@ -172,25 +171,24 @@ class Library:
                 self._uploads.append(key)
                 for old in self._uploads[:-KEPT]:
                     rmtree(Path(self._entries.pop(old).source).parent, ignore_errors=True)
-                    for way in PATHS:
-                        self._baselines.pop((old, way), None)
+                    for known in [known for known in self._baselines if known[0] == old]:
+                        del self._baselines[known]
                 del self._uploads[:-KEPT]
         return key
 
-    def baseline(self, key: str, path: str = DEFAULT) -> Baseline:
-        """Return an entry's blade, its stations joined by a path of `paths.PATHS`, prepared."""
+    def baseline(self, key: str, loft: Loft = PLAIN) -> Baseline:
+        """Return an entry's blade, made as asked for, prepared."""
         entry = self.entry(key)
-        return self._prepared(entry, lambda: read(entry.source, airfoils=entry.airfoils), path)
+        return self._prepared(entry, lambda: read(entry.source, airfoils=entry.airfoils), loft)
 
     def _prepared(
-        self, entry: Entry, defined: Callable[[], BladeDefinition], path: str = DEFAULT
+        self, entry: Entry, defined: Callable[[], BladeDefinition], loft: Loft = PLAIN
     ) -> Baseline:
-        key = entry.key, path
+        key = entry.key, loft
         with self._lock:
             found = self._baselines.get(key)
         if found is None:
-            blade = Blade.from_definition(defined(), path=path)
-            found = Baseline(entry.key, blade, self.space)
+            found = Baseline(entry.key, loft.blade(defined()), self.space)
             found.at(0.5)  # so that nothing is offered that cannot be shown
             with self._lock:
                 self._baselines[key] = found

@@ -15,8 +15,10 @@ def shell(state: State, entry: Entry, stem: str) -> str:
     words = ["bladegen", "perturb" if state.changed else "build", entry.named, "-o", "out/"]
     if entry.airfoils is not None:
         words += ["--airfoils", entry.airfoils]
-    if state.path != DEFAULT:
-        words += ["--path", state.path]
+    if state.loft.path != DEFAULT:
+        words += ["--path", state.loft.path]
+    if state.loft.fairing is not None:
+        words += ["--fair-planform", str(state.loft.fairing)]
     if any(state.t):
         # a value that starts with a minus would be taken for an option
         words.append("--pga=" + ",".join(f"{value:g}" for value in state.t))
@@ -35,13 +37,15 @@ def shell(state: State, entry: Entry, stem: str) -> str:
 def python(state: State, entry: Entry, stem: str) -> str:
     """Return the script that makes the blade of a state and writes ``<stem>.step``."""
     folder = "" if entry.airfoils is None else f", airfoils={entry.airfoils!r}"
-    path = "" if state.path == DEFAULT else f", path={state.path!r}"
+    loft = "" if state.loft.path == DEFAULT else f", path={state.loft.path!r}"
+    if state.loft.fair:
+        loft += ", fair_planform=bg.PlanformFairing()"
     turned = any(control.unit == "deg" and control.moved(state) for control in AFFINE)
     lines = [
         *(["from math import radians", ""] if turned else []),
         "import bladegen as bg",
         "",
-        f"blade = bg.Blade.from_definition(bg.read({entry.named!r}{folder}){path})",
+        f"blade = bg.Blade.from_definition(bg.read({entry.named!r}{folder}){loft})",
     ]
     if state.changed:
         asked = []

@@ -12,15 +12,16 @@ from urllib.parse import parse_qs, urlencode
 
 import numpy as np
 
-from bladegen.blade.lofting.paths import DEFAULT, PATHS
 from bladegen.errors import StudioError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.controls import AFFINE, CONTROLS, END, START, Control, controls
+from bladegen.studio.loft import PLAIN, Loft
 
 __all__ = ["History", "State", "from_query", "to_query"]
 
 LONGEST_QUERY = 2000
 STEPS_KEPT = 200  # of a page's history
+FAIR = "yes"  # in a link
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,8 @@ class State:
         See `affine_change.AffineChange`; twist in degrees, prebend is `prebend_scale`.
     at : float
         Span fraction of the section that is shown.
-    path : str
-        How stations are joined, of `paths.PATHS`.
+    loft : Loft
+        How the blade is made, before any change of it.
     """
 
     blade: str
@@ -52,7 +53,7 @@ class State:
     twist: float = 0.0
     prebend: float = 1.0
     at: float = 0.5
-    path: str = DEFAULT
+    loft: Loft = PLAIN
 
     @property
     def changed(self) -> bool:
@@ -82,15 +83,9 @@ class State:
             )
         return replace(self, window=window)
 
-    def joined(self, path: str) -> "State":
-        """Return the state with its stations joined by another path, or say why it is none."""
-        if path not in PATHS:
-            raise StudioError(f"path: got {path[:40]!r}, allowed are {', '.join(PATHS)}")
-        return replace(self, path=path)
-
     def baseline(self, blade: str) -> "State":
-        """Return a blade without changes: the same section shown, stations joined as here."""
-        return State(blade, (0.0,) * len(self.t), at=self.at, path=self.path)
+        """Return a blade without changes: the same section shown, made as here."""
+        return State(blade, (0.0,) * len(self.t), at=self.at, loft=self.loft)
 
     def reset(self) -> "State":
         """Return the baseline, with the same section shown."""
@@ -125,8 +120,10 @@ def to_query(state: State) -> str:
         words["t"] = ",".join(f"{value:g}" for value in state.t)
     if state.window is not None:
         words["window"] = ",".join(f"{value:g}" for value in state.window)
-    if state.path != plain.path:
-        words["path"] = state.path
+    if state.loft.path != plain.loft.path:
+        words["path"] = state.loft.path
+    if state.loft.fair:
+        words["fair"] = FAIR
     for entry in fields(State):
         value = getattr(state, entry.name)
         if isinstance(value, float) and value != getattr(plain, entry.name):
@@ -168,7 +165,11 @@ def from_query(query: str, known: Mapping[str, Control], default: str) -> State:
                 raise StudioError(f"link: window: got {text[:40]!r}, must be two span fractions")
             state = state.within(*numbers)
         elif key == "path":
-            state = state.joined(text)
+            state = replace(state, loft=replace(state.loft, path=text))
+        elif key == "fair":
+            if text != FAIR:
+                raise StudioError(f"link: fair: got {text[:40]!r}, allowed is {FAIR}")
+            state = replace(state, loft=replace(state.loft, fair=True))
         elif key in CONTROLS and key not in ("start", "end"):
             state = state.having(known[key], text)
         else:

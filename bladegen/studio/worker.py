@@ -14,7 +14,6 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile
 
-from bladegen.blade.blade import Blade
 from bladegen.errors import BladegenError, StudioError, ToleranceError
 from bladegen.exports import registry
 from bladegen.exports.exporters import aside, write
@@ -22,6 +21,7 @@ from bladegen.exports.options import Options
 from bladegen.exports.products import Products
 from bladegen.formats.reading import read
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.studio.loft import Loft
 from bladegen.studio.model import Baseline
 from bladegen.studio.state import State
 
@@ -96,7 +96,7 @@ def _made(job: Job) -> Made:
         job.told.write_text(message, encoding="utf-8")
 
     told("reading the blade")
-    baseline = _baseline(job.source, job.airfoils, job.state.path)
+    baseline = _baseline(job.source, job.airfoils, job.state.loft)
     variant = baseline.variant(job.state)
     path = Path(job.folder) / f"{baseline.stem(job.state)}{job.suffix}"
     told(f"making {job.suffix.lstrip('.').upper()}")
@@ -120,11 +120,10 @@ def _together(path: Path, job: Job) -> Path:
 
 
 @lru_cache(2)
-def _baseline(source: str, airfoils: str | None, path: str) -> Baseline:
+def _baseline(source: str, airfoils: str | None, loft: Loft) -> Baseline:
     """Return a blade; what lies under a source in a studio's folder never changes."""
     definition = read(source, airfoils=airfoils)
-    blade = Blade.from_definition(definition, path=path)
-    return Baseline(source, blade, ShapeSpace.bundled())
+    return Baseline(source, loft.blade(definition), ShapeSpace.bundled())
 
 
 class Worker:

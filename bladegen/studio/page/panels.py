@@ -1,6 +1,7 @@
 """What stands on a studio page: the bar, the sliders, the checks, the 3D view and the charts."""
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from html import escape
 from typing import Any
 
@@ -14,7 +15,17 @@ __all__ = ["build"]
 
 ICONS = {"good": "check_circle", "odd": "info", "bad": "error"}
 STATUS = {"good": "good", "odd": "worth a look", "bad": "not usable"}
-JOINED = {"spline": "Smooth", "geodesic": "Geodesics"}
+LOFTS: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
+    "Path": (
+        "How stations are joined: smoothly, or by the paper's geodesics",
+        {"Smooth": {"path": "spline"}, "Geodesics": {"path": "geodesic"}},
+    ),
+    "Planform": (
+        "Chord, twist and axis as given, or without steps of curvature, at most 0.1 % of the "
+        "chord and 0.02 deg away",
+        {"As given": {"fair": False}, "Fair": {"fair": True}},
+    ),
+}
 VIEWS = {
     "blade": ("Whole blade", "Blade"),
     "root": ("The root", "Root"),
@@ -66,7 +77,7 @@ def _sliders(page: Page) -> None:
         _plain_number(page, control)
     ui.html("Along the span", tag="h2", sanitize=False)
     _window(page)
-    _path(page)
+    _choices(page)
 
 
 def _plain_number(page: Page, control: Control) -> None:
@@ -105,7 +116,7 @@ def _window(page: Page) -> None:
     def now() -> tuple[float, float]:
         if page.state.window is not None:
             return page.state.window
-        window = page.studio.library.baseline(page.state.blade, page.state.path).window
+        window = page.studio.library.baseline(page.state.blade, page.state.loft).window
         return round(window.start, 2), round(window.end, 2)
 
     def start(value: Any) -> None:
@@ -118,22 +129,27 @@ def _window(page: Page) -> None:
     _number(page, END, lambda: now()[1], end)
 
 
-def _path(page: Page) -> None:
-    """Put the choice of how stations are joined."""
+def _choices(page: Page) -> None:
+    """Put the choices of how the blade is made, each between named ways."""
     from nicegui import ui
 
-    choices = {}
-    with ui.element("div").classes("choice").props('role=group aria-label="Path"'):
-        ui.label("Path").tooltip("How stations are joined: smoothly, or by the paper's geodesics")
-        ui.element("span")
-        for path, words in JOINED.items():
-            button = ui.button(words, color=None, on_click=lambda path=path: page.join(path))
-            button.props(f'flat dense no-caps size=12px padding="2px 8px" aria-label="{words}"')
-            choices[path] = button
+    buttons = []
+    for name, (tip, ways) in LOFTS.items():
+        with ui.element("div").classes("choice").props(f'role=group aria-label="{name}"'):
+            ui.label(name).tooltip(tip)
+            ui.element("span")
+            for words, way in ways.items():
+                button = ui.button(words, color=None, on_click=lambda way=way: take(way))
+                button.props(f'flat dense no-caps size=12px padding="2px 8px" aria-label="{words}"')
+                buttons.append((button, way))
+
+    def take(way: dict[str, Any]) -> Awaitable[None]:
+        return page.remake(replace(page.state.loft, **way))
 
     def follow() -> None:
-        for path, button in choices.items():
-            button.props(f"aria-pressed={str(path == page.state.path).lower()}")
+        loft = page.state.loft
+        for button, way in buttons:
+            button.props(f"aria-pressed={str(replace(loft, **way) == loft).lower()}")
 
     page.followers.append(follow)
 
@@ -219,7 +235,7 @@ def _section(page: Page) -> Any:
     placed.on_click(turn)
 
     def follow() -> None:
-        length = page.studio.library.baseline(page.state.blade, page.state.path).blade.length
+        length = page.studio.library.baseline(page.state.blade, page.state.loft).blade.length
         words.set_text(f"{page.state.at * length:.1f} m")
 
     page.followers.append(follow)

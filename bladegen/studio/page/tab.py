@@ -7,7 +7,7 @@ and what comes out is shown at once: surface, charts, checks, buttons and the ta
 
 import asyncio
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from secrets import token_urlsafe
 from tempfile import mkdtemp
@@ -18,6 +18,7 @@ import numpy as np
 from bladegen.errors import BladegenError, StudioError
 from bladegen.studio import recipes
 from bladegen.studio.controls import Control, controls
+from bladegen.studio.loft import Loft
 from bladegen.studio.page import charts
 from bladegen.studio.scene import Scene
 from bladegen.studio.shared import Studio
@@ -108,7 +109,7 @@ class Page:
         from nicegui import run
 
         try:
-            await run.io_bound(self.studio.library.baseline, self.state.blade, self.state.path)
+            await run.io_bound(self.studio.library.baseline, self.state.blade, self.state.loft)
         except BladegenError as error:
             self.trouble = str(error)
             self.history = History(from_query("", self.controls, self.studio.first))
@@ -118,17 +119,17 @@ class Page:
         if key != self.state.blade:
             await self._take(self.state.baseline(key))
 
-    async def join(self, path: str) -> None:
-        """Join the blade's stations by another path; its changes stay."""
-        if path != self.state.path:
-            await self._take(self.state.joined(path))
+    async def remake(self, loft: Loft) -> None:
+        """Make the blade another way; its changes stay."""
+        if loft != self.state.loft:
+            await self._take(replace(self.state, loft=loft))
 
     async def _take(self, state: State) -> None:
         """Show a state whose blade is first prepared; one that cannot be is said."""
         from nicegui import run
 
         try:
-            await run.io_bound(self.studio.library.baseline, state.blade, state.path)
+            await run.io_bound(self.studio.library.baseline, state.blade, state.loft)
         except BladegenError as error:
             self.say(str(error), bad=True)
             self.follow()
@@ -142,7 +143,7 @@ class Page:
         state = self.state
 
         def drawn() -> State:
-            baseline = self.studio.library.baseline(state.blade, state.path)
+            baseline = self.studio.library.baseline(state.blade, state.loft)
             return baseline.drawn(state, self._rng)
 
         found = await run.io_bound(drawn)
@@ -191,14 +192,14 @@ class Page:
     async def _work(self) -> None:
         from nicegui import run
 
-        before = (self.scene.state.blade, self.scene.state.path) if self.scene else ("", "")
+        before = (self.scene.state.blade, self.scene.state.loft) if self.scene else None
         try:
             while self._wanted is not None:
                 state, self._wanted = self._wanted, None
                 shown = await run.io_bound(self.made, state)
                 if shown is None:  # the studio ends
                     return
-                now = state.blade, state.path
+                now = state.blade, state.loft
                 await self._show(shown, refit=now != before)
                 before = now
         except BladegenError as error:
@@ -210,7 +211,7 @@ class Page:
 
     def made(self, state: State) -> Shown:
         """Make all that a state shows; on a thread."""
-        baseline = self.studio.library.baseline(state.blade, state.path)
+        baseline = self.studio.library.baseline(state.blade, state.loft)
         scene = baseline.scene(state)
         plain = baseline.at(state.at)
         return Shown(
@@ -240,7 +241,7 @@ class Page:
         """Return the state as a link, as a command and as a script."""
         state, library = self.state, self.studio.library
         entry = library.entry(state.blade)
-        stem = library.baseline(state.blade, state.path).stem(state)
+        stem = library.baseline(state.blade, state.loft).stem(state)
         return (
             f"{self.client.request.base_url}?{to_query(state)}",
             recipes.shell(state, entry, stem),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import pyvista
 from numpy.testing import assert_allclose
+from vtkmodules.vtkIOGeometry import vtkSTLReader
 
 import bladegen as bg
 from bladegen.cad import exchange, shapes
@@ -20,7 +21,7 @@ from bladegen.surface.grids.grid import Spacing
 from bladegen.surface.regions import REGIONS
 from bladegen.surface.tips import flat_tip, round_tip
 
-MESHES = [".stl", ".ply", ".glb", ".obj", ".3mf", ".vtp"]
+MESHES = [".stl", ".regions.stl", ".ply", ".glb", ".obj", ".3mf", ".vtp"]
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +55,7 @@ def test_meshes_read_back_with_the_same_box_and_volume(blade, made, suffix, tmp_
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
-@pytest.mark.parametrize("suffix", [".stl", ".ply", ".obj", ".vtp"])
+@pytest.mark.parametrize("suffix", [".stl", ".regions.stl", ".ply", ".obj", ".vtp"])
 def test_millimetres_are_a_thousand_times_as_many(blade, suffix, tmp_path):
     metre = read(bg.export(blade, tmp_path / f"m{suffix}", stations=20))
     milli = read(bg.export(blade, tmp_path / f"mm{suffix}", stations=20, unit="mm"))
@@ -68,7 +69,7 @@ def test_files_state_their_unit(blade, tmp_path):
     assert "\n# bladegen nrel5mw, unit: m\n" in obj
 
 
-@pytest.mark.parametrize("suffix", [".stl", ".ply", ".glb", ".obj"])
+@pytest.mark.parametrize("suffix", [".stl", ".regions.stl", ".ply", ".glb", ".obj"])
 def test_the_same_blade_gives_the_same_bytes(blade, suffix, tmp_path):
     first, second = (
         bg.export(blade, tmp_path / f"{name}{suffix}", stations=20).read_bytes() for name in "ab"
@@ -76,16 +77,29 @@ def test_the_same_blade_gives_the_same_bytes(blade, suffix, tmp_path):
     assert first == second
 
 
-@pytest.mark.parametrize("suffix", [".obj", ".vtp"])
+@pytest.mark.parametrize("suffix", [".obj", ".vtp", ".regions.stl"])
 def test_vtk_finds_the_regions(blade, made, suffix, tmp_path):
     path = bg.export(blade, tmp_path / f"a{suffix}", stations=60)
-    found = pyvista.read(path).compute_cell_sizes()
+    if suffix == ".regions.stl":
+        reader = vtkSTLReader()
+        reader.SetFileName(str(path))
+        reader.ScalarTagsOn()
+        reader.Update()
+        found = pyvista.wrap(reader.GetOutput()).compute_cell_sizes()
+        number = np.array(found["STLSolidLabeling"]).astype(int)
+        lines = path.read_text().splitlines()
+        for word in ("solid ", "endsolid "):
+            groups = [line[len(word) :] for line in lines if line.startswith(word)]
+            groups[-1] = groups[-1].partition("; bladegen")[0]  # what the file is made from
+            assert groups == [name.replace(" ", "_") for name in REGIONS[:5]]
+    else:
+        found = pyvista.read(path).compute_cell_sizes()
     if suffix == ".obj":
         number = np.array(found["GroupIds"]).astype(int)
         groups = [line[2:] for line in path.read_text().splitlines() if line.startswith("g ")]
         assert groups == [name.replace(" ", "_") for name in REGIONS[:5]]
         number -= number.min()
-    else:
+    elif suffix == ".vtp":
         number = found["region"]
         assert list(pyvista.read(path).field_data["regions"]) == list(REGIONS)
     corners = made.vertices[made.faces]
@@ -93,6 +107,18 @@ def test_vtk_finds_the_regions(blade, made, suffix, tmp_path):
     areas = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     wanted = np.bincount(made.regions, areas)
     assert_allclose(np.bincount(number, np.abs(found["Area"])), wanted, rtol=1e-5)
+
+
+def test_normals_of_regions_look_outward(blade, made, tmp_path):
+    path = bg.export(blade, tmp_path / "a.regions.stl", stations=60)
+    lines = path.read_text().splitlines()
+    rows = [line.split()[-3:] for line in lines if line.startswith(("facet", "vertex"))]
+    facets = np.array(rows, dtype=float).reshape(-1, 4, 3)
+    across = np.cross(facets[:, 2] - facets[:, 1], facets[:, 3] - facets[:, 1])
+    length = np.linalg.norm(across, axis=1)
+    assert np.sum(facets[:, 0] * across, axis=1) == pytest.approx(length, rel=1e-4, abs=1e-6)
+    flux = np.sum(facets[:, 1:].mean(axis=1) * across) / 6.0
+    assert_allclose(flux, made.volume, rtol=1e-6)
 
 
 def test_3mf_gives_each_region_a_material(blade, made, tmp_path):

@@ -205,7 +205,7 @@ def _measure(report: dict[str, Any], products: Products, kind: Kind, path: Path)
         report.setdefault("grid", grid_figures(products.grid))
     elif path.suffix in _MESHES:
         figures = checks.mesh_figures(mesh_files.read(path))
-        report.setdefault("meshes", {})[path.suffix.lstrip(".")] = figures
+        report.setdefault("meshes", {})[suffix_of(path).lstrip(".")] = figures
 
 
 def report_path(target: Path, name: str) -> Path:

@@ -26,6 +26,7 @@ from bladegen.support.files import beginning_of, end_of, replacing
 __all__ = ["marked", "put", "read"]
 
 STL_HEADER = 80  # bytes of free text at the start of a binary STL file
+TEXT_STL = b"solid "
 HEAD = 1 << 20  # bytes of a file that are looked through, and of what a member unpacks to
 STEP_STRING = 200  # characters; ISO 10303-21 allows 256 in a header
 IGES_WIDTH = 72  # characters of a line before its section's letter and number
@@ -63,6 +64,8 @@ def read(path: Path) -> Provenance | None:
         text = _TEXTS.get(path.suffix.lower(), _plain)(head)
         if head and path.suffix.lower() in _PACKED:
             text = _packed(path)
+        if path.suffix.lower() == ".stl" and head.startswith(TEXT_STL):
+            text = end_of(path, HEAD).decode("latin-1").rstrip().rpartition("\n")[2]
         if path.suffix.lower() in _ENDED:
             text = picture_marks.ended(end_of(path, HEAD))
     except (OSError, ValueError, LookupError, EOFError, zlib.error, zipfile.BadZipFile):
@@ -113,6 +116,8 @@ def _brep(content: bytes, made: Provenance) -> bytes:
 
 
 def _stl(content: bytes, made: Provenance) -> bytes:
+    if content.startswith(TEXT_STL):  # behind the last solid's name, which readers pass over
+        return content.rstrip() + f"; {made.text}\n".encode()
     unit = dict(made.settings).get("unit", "m")
     header = made.short(unit, STL_HEADER).encode("ascii")
     return header.ljust(STL_HEADER) + content[STL_HEADER:]

@@ -81,6 +81,11 @@ def _write_stl(products: Products, path: Path) -> None:
     path.write_bytes(scaled.export(file_type="stl"))
 
 
+def _write_regions_stl(products: Products, path: Path) -> None:
+    text = mesh_files.stl_text(products.mesh, scale=UNITS[products.options.unit])
+    path.write_text(text, encoding="ascii")
+
+
 def _write_obj(products: Products, path: Path) -> None:
     unit = products.options.unit
     header = f"bladegen {' '.join(products.blade.name.split())}, unit: {unit}"
@@ -165,6 +170,11 @@ FORMATS = {
         _write_curves,
     ),
     ".stl": Format(Kind.triangles, "STL, binary triangles, m (or mm)", _write_stl),
+    ".regions.stl": Format(
+        Kind.triangles,
+        "STL, text, a named solid a region for meshers, m (or mm)",
+        _write_regions_stl,
+    ),
     ".glb": Format(Kind.triangles, "glTF binary, triangles for the web, m", _write_glb),
     ".ply": Format(Kind.triangles, "PLY, binary triangles, m (or mm)", _write_ply),
     ".obj": Format(

@@ -25,7 +25,9 @@ from bladegen.surface.tips import Tip, flat_tip
 __all__ = [
     "obj_text",
     "read",
+    "region_word",
     "sound",
+    "stl_text",
     "to_trimesh",
     "trimesh_of",
     "with_materials",
@@ -34,6 +36,11 @@ __all__ = [
 
 MODEL = "3D/3dmodel.model"  # of a 3MF file, the member with the mesh
 MATERIALS = 2  # its resource of materials; 1 is the object
+FACET = (
+    "facet normal %.6g %.6g %.6g\nouter loop\n"
+    + 3 * "vertex %.9g %.9g %.9g\n"
+    + "endloop\nendfacet\n"
+)
 FARTHEST = 1e9  # of a vertex of a file, in its unit: products of three lengths stay finite
 
 
@@ -57,9 +64,39 @@ def obj_text(mesh: TriangleMesh, header: str, *, scale: float = 1.0) -> str:
     regions = mesh.regions
     assert regions is not None  # a blade's mesh has them
     for number in np.unique(regions).tolist():
-        lines.append(f"g {REGIONS[number].replace(' ', '_')}")
+        lines.append(f"g {region_word(REGIONS[number])}")
         lines += [f"f {a} {b} {c}" for a, b, c in (mesh.faces[regions == number] + 1).tolist()]
     return "\n".join([f"# {header}", *lines, ""])
+
+
+def stl_text(mesh: TriangleMesh, *, scale: float = 1.0) -> str:
+    """Return a mesh as an STL file's text, a solid a region, its lengths times `scale`.
+
+    Vertices are written alike wherever they come, so that readers join solids at their seams.
+    """
+    regions = mesh.regions
+    assert regions is not None  # a blade's mesh has them
+    corners = mesh.vertices[mesh.faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(across, axis=1, keepdims=True)
+    normals = np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
+    rows = np.concatenate([normals[:, None], corners * scale], axis=1).reshape(-1, 12)
+    parts = []
+    for number in np.unique(regions).tolist():
+        name = region_word(REGIONS[number])
+        some = rows[regions == number]
+        facets = FACET * len(some) % tuple(some.ravel().tolist())
+        parts.append(f"solid {name}\n{facets}endsolid {name}\n")
+    return "".join(parts)
+
+
+def region_word(name: str) -> str:
+    """Return a region's name as one word, for files that split names at blanks.
+
+    >>> region_word("suction side")
+    'suction_side'
+    """
+    return name.replace(" ", "_")
 
 
 def with_materials(package: bytes, mesh: TriangleMesh, name: str) -> bytes:
@@ -132,7 +169,10 @@ def read(path: Path) -> Any:
         made = sound(path, np.stack([x, -z, y], axis=-1), faces)
         made.merge_vertices()
         return made
-    return sound(path, vertices, faces, loaded)
+    made = sound(path, vertices, faces, loaded)
+    if kind == "stl":
+        made.merge_vertices()  # solids of one file have vertices of their own
+    return made
 
 
 def sound(path: Path, vertices: Array, faces: Indices, made: Any = None) -> Any:

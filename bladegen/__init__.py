@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from bladegen.errors import BladegenError, Finding
     from bladegen.exports.definitions import write
     from bladegen.exports.exporters import export
+    from bladegen.families.dataset.loading import load_family
     from bladegen.families.family import Family, family
     from bladegen.formats.airfoils.writing import write_airfoil
     from bladegen.formats.bundled import bundled
@@ -65,6 +66,7 @@ _HOME = {
     "bundled": "formats.bundled",
     "export": "exports.exporters",
     "family": "families.family",
+    "load_family": "families.dataset.loading",
     "read": "formats.reading",
     "write": "exports.definitions",
     "write_airfoil": "formats.airfoils.writing",
@@ -94,6 +96,7 @@ __all__ = [
     "bundled",
     "export",
     "family",
+    "load_family",
     "read",
     "write",
     "write_airfoil",

@@ -1,10 +1,12 @@
-"""A differentiable blade as a function that JAX differentiates through.
+"""A differentiable blade as a function that JAX differentiates through; families as data.
 
 In: vectors of parameters x (..., p), float64.  Out: sections [m] and quantities by name.
 `grad`, `vjp`, `jacrev`, `jit` and `vmap` work; forward mode and second derivatives do not.
-Computed by NumPy on the host, called from where JAX runs.  The extra `jax` installs the library.
+Computed by NumPy on the host, called from where JAX runs.  `batches` gives a written family's
+arrays on JAX's device.  The extra `jax` installs the library.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,6 +15,7 @@ import numpy as np
 
 from bladegen.adapters.outputs import Outputs
 from bladegen.errors import MissingLibraryError, PerturbationError
+from bladegen.families.dataset.loading import LoadedFamily
 from bladegen.parametric.model import ParametricBlade
 
 try:
@@ -20,7 +23,7 @@ try:
 except ImportError as error:
     raise MissingLibraryError(error) from None
 
-__all__ = ["BladeFunction"]
+__all__ = ["BladeFunction", "batches"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,3 +98,12 @@ class BladeFunction:
 
 def _shaped(shape: tuple[int, ...]) -> Any:
     return jax.ShapeDtypeStruct(shape, np.float64)
+
+
+def batches(family: LoadedFamily, *given: Any, **how: Any) -> Iterator[dict[str, Any]]:
+    """Give batches of a family's arrays as JAX arrays, by name: `LoadedFamily.batches`.
+
+    The next batch is read while the device works on the one before: transfers are asynchronous.
+    """
+    for part in family.batches(*given, **how):
+        yield {name: jax.device_put(values) for name, values in part.items()}

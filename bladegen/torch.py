@@ -1,25 +1,31 @@
-"""A differentiable blade as a function that PyTorch differentiates through.
+"""A differentiable blade as a function that PyTorch differentiates through; families as data.
 
 In: vectors of parameters x (..., p), float64.  Out: sections [m] and quantities by name.
 Gradients (`backward`, `torch.func.grad`), forward mode (`jvp`) and `vmap` work; second
-derivatives are not known.  Computed on the CPU.  The extra `torch` installs the library.
+derivatives are not known.  Computed on the CPU.  `FamilyDataset` is a written family as a
+`torch.utils.data.Dataset`.  The extra `torch` installs the library.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from bladegen.adapters.outputs import Evaluated, Outputs
 from bladegen.errors import MissingLibraryError, PerturbationError
+from bladegen.families.dataset.loading import LoadedFamily
+from bladegen.families.dataset.reading import arrays_at
 from bladegen.parametric.model import ParametricBlade
 
 try:
     import torch
     from torch.autograd import Function
+    from torch.utils.data import Dataset
 except ImportError as error:
     raise MissingLibraryError(error) from None
 
-__all__ = ["BladeFunction"]
+__all__ = ["BladeFunction", "FamilyDataset"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,3 +150,48 @@ class _Along(_First):
     @staticmethod
     def vmap(info: Any, places: Any, made: Outputs, *given: Any) -> Any:
         return _batched(_Along, info.batch_size, places, made, *given)
+
+
+class FamilyDataset(Dataset):  # type: ignore[misc]
+    """A written family as a map-style dataset: tensors of a variant by name.
+
+    Parameters
+    ----------
+    family : LoadedFamily
+        `bladegen.load_family(path)`.
+    names : sequence of str
+        Arrays of numbers of the family, or "parameters".
+    places : (b,) array of int, optional
+        Which variants, such as ``family.split("train")``; all if not given.
+    dtype : torch.dtype
+        Of the tensors.
+
+    Notes
+    -----
+    `DataLoader` reads a batch at once (`__getitems__`).  Shuffled batches read each variant where
+    it lies; `LoadedFamily.batches` shuffles so that every shard is read once, which is quicker.
+    """
+
+    def __init__(
+        self,
+        family: LoadedFamily,
+        names: Any = ("parameters", "sections"),
+        places: Any = None,
+        dtype: Any = torch.float32,
+    ) -> None:
+        self.family, self.names, self.dtype = family, tuple(names), dtype
+        self.places = np.arange(len(family)) if places is None else np.asarray(places)
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    def __getitem__(self, row: int) -> dict[str, Any]:
+        if not -len(self) <= row < len(self):
+            raise IndexError(row)
+        return self.__getitems__([row])[0]
+
+    def __getitems__(self, rows: list[int]) -> list[dict[str, Any]]:
+        """Return several variants, read at once."""
+        read = arrays_at(self.family, self.names, self.places[np.asarray(rows)])
+        tensors = {name: torch.as_tensor(v).to(self.dtype) for name, v in read.items()}
+        return [{name: v[i] for name, v in tensors.items()} for i in range(len(rows))]

@@ -119,3 +119,39 @@ def test_what_the_page_on_optimising_shows_runs():
     exec("\n".join(blocks), names)  # one after the other, as they are read
     assert len(names["x"].grad) == len(names["model"].names)
     assert names["slope"](names["model"].baseline).shape == (len(names["model"].names),)
+
+
+@pytest.fixture(scope="module")
+def family(tmp_path_factory):
+    from bladegen.families.order import Order
+    from bladegen.families.run import run
+
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=61)
+    made = bg.family(blade, count=70, spans=16, bounds={"chord": (0.9, 1.1)}, design="box")
+    target = tmp_path_factory.mktemp("family")
+    run(Order(made, target))
+    return bg.load_family(target)
+
+
+def test_torch_loads_a_family_in_batches(family):
+    names = ("variant", "parameters", "sections")
+    data = bladegen.torch.FamilyDataset(family, names, family.split("train"))
+    assert len(data) == len(family.split("train"))
+    loader = torch.utils.data.DataLoader(data, batch_size=16, shuffle=True)
+    seen = []
+    for part in loader:
+        assert part["sections"].dtype == torch.float32
+        places = part["variant"].numpy().astype(int)
+        assert_allclose(part["sections"], family["sections"][:][places])
+        assert_allclose(part["parameters"], family.parameters[places], rtol=1e-6)
+        seen += places.tolist()
+    assert sorted(seen) == family.split("train").tolist()
+    with pytest.raises(IndexError):
+        data[len(data)]
+
+
+def test_jax_is_given_a_familys_batches(family):
+    parts = list(bladegen.jax.batches(family, ("sections", "chord"), 32))
+    assert [len(part["chord"]) for part in parts] == [32, 32, 6]
+    assert all(isinstance(value, jax.Array) for part in parts for value in part.values())
+    assert_allclose(np.concatenate([part["chord"] for part in parts]), family["chord"][:])

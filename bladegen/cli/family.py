@@ -171,6 +171,7 @@ def _cluster(address: str | None) -> Iterator[Any]:
 
 def _summary(order: Any, made: int) -> None:
     """Draw the contact sheet and say what the folder holds."""
+    from bladegen.families.dataset.writing import CARD
     from bladegen.families.folder import read_manifest
     from bladegen.views.contact_sheet import contact_sheet
     from bladegen.views.tables import digits, megabytes
@@ -197,7 +198,8 @@ def _summary(order: Any, made: int) -> None:
     print_table(["figure", "value"], rows, title=f"family of {family.blade.name}")
     files = [
         [str(order.place.manifest), "a row a variant: factors, validity, properties over span"],
-        [str(order.place.store), "sections [m]"],
+        [str(order.place.store), "the dataset: xarray.open_zarr, bladegen.load_family"],
+        [str(order.target / CARD), "its card: what it is, splits, licence, how to cite"],
         [str(sheet), "the family at a glance"],
     ]
     if order.suffixes:

@@ -190,7 +190,7 @@ class Family:
 
     def _drawn(self, index: Indices) -> Array:
         """Return the values (b, d) of variants, after all redrawing."""
-        return self.settled(index)[0]
+        return self.settled(index)[0] if self._redraws else self.design.at(index)
 
     def settled(self, index: Indices) -> tuple[Array, Indices, list[str]]:
         """Return values (b, d) of variants after all redrawing, numbers of draws, what is wrong."""

@@ -2,7 +2,9 @@
 
     family.json        what the family is (`identity`) and how its files are made
     manifest.parquet   one row a variant: factors, validity, volume, properties over span, files
-    sections.zarr      sections (count, spans, landmarks, 3) [m], span fractions `eta`, `u`
+    sections.zarr      the dataset (`dataset`): sections (count, spans, landmarks, 3) [m], `eta`,
+                       `u`, and once the manifest is whole, what that holds
+    CARD.md            the dataset's card; space.npz its space where it is not the bundled one
     blades/            files of each variant in the formats asked for
     parts/             while a run goes on: one Parquet file a finished block
 
@@ -147,7 +149,7 @@ class FamilyFolder:
 
         shape = (count, len(eta), len(u), 3)
         try:
-            group = zarr.open_group(self.store, mode="a", zarr_format=3)
+            group = zarr.open_group(self.store, mode="a", zarr_format=3, use_consolidated=False)
             group.attrs.update({"unit": "m", "axes": "variant, span, landmark, xyz"})
             group.require_array(
                 "sections",
@@ -158,9 +160,9 @@ class FamilyFolder:
                 compressors=None,
                 dimension_names=("variant", "span", "landmark", "xyz"),
             )
-            for name, values in (("eta", eta), ("u", u)):
+            for name, dimension, values in (("eta", "span", eta), ("u", "landmark", u)):
                 if name not in group:
-                    group.create_array(name, data=np.array(values))
+                    group.create_array(name, data=np.array(values), dimension_names=(dimension,))
         except OSError as error:
             raise ExportError(f"{self.store}: cannot be written: {error.strerror}") from None
 
@@ -169,7 +171,7 @@ class FamilyFolder:
         """The Zarr array of sections."""
         import zarr
 
-        return zarr.open_group(self.store, mode="r+")["sections"]
+        return zarr.open_group(self.store, mode="r+", use_consolidated=False)["sections"]
 
     def write_block(self, number: int, block: Block, rows: dict[str, Any]) -> None:
         """Write a block's sections, then its part of the manifest."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import FamilyError
+from bladegen.families.dataset.writing import write_dataset
 from bladegen.families.folder import FLOAT_TYPES
 from bladegen.families.forecasts import Forecast, free_bytes, require_room
 from bladegen.families.making import make_block, sections_of
@@ -105,6 +106,7 @@ def run(
                     for said in again:
                         logger.debug("%s", said)
         place.finish(len(family))
+        write_dataset(order)
     return done - before
 
 

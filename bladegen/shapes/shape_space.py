@@ -148,7 +148,7 @@ class ShapeSpace:
     def save(self, path: str | Path) -> None:
         """Write the space to an npz file, with a version and a checksum."""
         where = path_of(path, "path", SpaceError)
-        if self._gram is not None:
+        if not self.is_own:
             raise SpaceError(f"{path}: save the space that was learned, not one evaluated from it")
         require_suffix(where, (".npz",))
         save_arrays(where, {name: getattr(self, name) for name in ARRAYS}, self.about)
@@ -182,6 +182,11 @@ class ShapeSpace:
         flat = self.modes.reshape(self.dimension, -1)
         gram: Array = flat @ flat.T
         return None if np.abs(gram - np.eye(len(gram))).max() < ORTHONORMAL else gram
+
+    @property
+    def is_own(self) -> bool:
+        """Whether its landmarks are those that it was learned at, so that |t| is a distance."""
+        return self._gram is None
 
     @property
     def dimension(self) -> int:

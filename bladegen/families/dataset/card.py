@@ -1,0 +1,111 @@
+"""The data card of a family: what it holds, how it was made, how to use it and to cite it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from bladegen.families.dataset.splits import SHARES, SPLITS
+
+__all__ = ["card"]
+
+MEANT = {
+    "ellipsoid": "independent, uniform in the ellipsoid that holds the space's data",
+    "sobol": "scrambled Sobol points in the box of the bounds",
+    "lhs": "a Latin hypercube in the box of the bounds",
+    "box": "independent, uniform in the box of the bounds",
+    "normal": "independent, normal with the covariance of the space's data",
+    "sweep": "from corner to opposite corner of the box, along each diagonal",
+    "table": "the rows of a table",
+}
+
+
+def card(identity: Mapping[str, Any], about: Mapping[str, Any], sound: int, draws: int) -> str:
+    """Return the card of a family as Markdown.
+
+    Parameters
+    ----------
+    identity : mapping
+        What `family.json` holds.
+    about : mapping
+        Attributes of its dataset.
+    sound, draws : int
+        How many variants are sound, and how often all were drawn.
+    """
+    count, spans, landmarks = (identity[name] for name in ("count", "spans", "landmarks"))
+    kind = identity["design"]
+    factors = "\n".join(
+        f"| {name} | {low:.6g} | {high:.6g} | {'rad' if _angle(name) else 'factor'} |"
+        for name, (low, high) in identity["factors"].items()
+    )
+    shares = ", ".join(f"{name} {share:.0%}" for name, share in zip(SPLITS, SHARES, strict=True))
+    said = "\n".join(f"- {name.replace('_', ' ')}: {about[name]}" for name in about if _told(name))
+    unsound = "are drawn again" if identity["invalid"] == "redraw" else "are kept and marked"
+    return f"""# {count} variants of {identity["blade"]}
+
+Perturbed wind turbine blades: {count} variants, each {spans} sections of {landmarks} landmarks,
+in metres, with what was changed, chord, twist, thickness and section properties.
+
+## Use
+
+```python
+import xarray
+
+data = xarray.open_zarr("sections.zarr")  # one dataset: sections, parameters, properties
+train = data.sel(variant=(data.split == "train") & data.valid)
+```
+
+```python
+import bladegen as bg
+
+family = bg.load_family(".")  # the same with NumPy alone
+family.parameters, family["sections"][0], family["chord"][:], family[3]  # the last is a blade
+```
+
+## What it holds
+
+`sections.zarr` is a store of Zarr format 3 with the dimensions variant, span, landmark and xyz;
+each variable says its `long_name` and `units`. `manifest.parquet` holds the same as a table,
+without the sections. Origin at the blade root, z to the tip, x toward the suction side, y toward
+the trailing edge.
+
+| parameter | least | largest | unit |
+| --- | --- | --- | --- |
+{factors}
+
+## How it was made
+
+Variants are {MEANT.get(kind, kind)} (design {kind}, seed {identity["seed"]}).
+{sound} of {count} are sound: no section crosses itself, loses its thickness, leaves the data of
+the space or has a nose, tail or waves of no airfoil, within what was allowed. Draws that are not
+sound {unsound}: {draws} draws in all.
+
+{said}
+
+## Splits
+
+The variable `split` says for each variant train, validation or test: {shares} on
+average, by the seed and the place of the variant alone, so that a family which is added to keeps
+its splits. Variants of a sweep are neighbours: split those by diagonals instead.
+
+## Licence and citation
+
+The perturbed geometry derives from the baseline's definition: the licence of that file holds for
+it too. (The definitions that come with bladegen name theirs in their first lines.) Cite bladegen
+{identity["bladegen"]}, the publication of the baseline turbine, and for the shape representation
+O. A. Doronina, Z. J. Grey, A. Glaws: Grassmannian Shape Representations for Aerodynamic
+Applications, 2022.
+"""
+
+
+def _angle(name: str) -> bool:
+    return name == "twist" or name[1:].isdigit()
+
+
+def _told(name: str) -> bool:
+    return name in (
+        "source",
+        "command",
+        "baseline",
+        "baseline_file",
+        "baseline_sha256",
+        "made_from",
+    )

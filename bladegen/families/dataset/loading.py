@@ -1,0 +1,292 @@
+"""A family's folder as a value: its arrays by name, its blades by index, its splits.
+
+`load_family` needs Zarr and NumPy alone.  Families of version 1 are read as well: what their store
+does not hold comes from the manifest.
+"""
+
+import json
+import operator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, SupportsIndex
+
+import numpy as np
+
+from bladegen.blade.blade import Blade
+from bladegen.blade.changes.deformation import Window
+from bladegen.blade.lofting.paths import DEFAULT
+from bladegen.blade.planform import PLANES
+from bladegen.errors import FamilyError, PlaceError
+from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
+from bladegen.families.dataset.store import column_values, opened
+from bladegen.families.dataset.variables import parameter, variables
+from bladegen.families.family import Family
+from bladegen.formats.bundled import bundled
+from bladegen.formats.reading import read
+from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.support.arguments import one_of, shown, suggestion, whole
+from bladegen.support.arrays import Array, Indices, readonly
+from bladegen.support.files import content_of
+from bladegen.variants.designs import tabulated
+
+__all__ = ["LoadedFamily", "load_family"]
+
+MOST = 2**20  # bytes of family.json
+SAME = 1e-6  # of the blade's length: how far a blade may lie from stored sections, float32 or not
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LoadedFamily:
+    """A family that was written, opened for reading.  `load_family` makes one.
+
+    ``family["chord"]`` is an array of the store, read when it is sliced; ``family[3]`` is a blade.
+
+    Parameters
+    ----------
+    path : Path
+        The folder.
+    identity : dict
+        What the family is: the content of `family.json`.
+    baseline : Blade, optional
+        What was perturbed, where it is no bundled blade.
+    space : ShapeSpace, optional
+        Its modes, where it is not the bundled space.
+    """
+
+    path: Path
+    identity: dict[str, Any]
+    baseline: Blade | None = None
+    space: ShapeSpace | None = None
+
+    def __repr__(self) -> str:
+        return f"<Family of {self.identity['blade']} in {self.path}: {len(self)} variants>"
+
+    def __len__(self) -> int:
+        return int(self.store["sections"].shape[0])
+
+    @cached_property
+    def store(self) -> Any:
+        """The Zarr group."""
+        return opened(self.path / "sections.zarr")
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        """What the dataset says of itself: version, command, seed, baseline."""
+        return dict(self.store.attrs)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of all arrays."""
+        return tuple(dict.fromkeys([*self.store.array_keys(), *self._columns]))
+
+    @cached_property
+    def _columns(self) -> dict[str, str]:
+        """Columns of the manifest by the names of their arrays."""
+        import pyarrow.parquet as pq
+
+        columns = pq.read_schema(self.path / "manifest.parquet").names
+        return {one.name: one.column for one in variables(columns, self.factors)}
+
+    @cached_property
+    def factors(self) -> tuple[str, ...]:
+        """Names of what varies, as `bladegen.family` takes them."""
+        return tuple(self.identity["factors"])
+
+    @cached_property
+    def parameters(self) -> Array:
+        """What varies, (variants, factors), in radians or as factors, `factors` in order."""
+        columns = []
+        for factor in self.factors:
+            values = np.asarray(self[parameter(factor).name][:], dtype=np.float64)
+            columns.append(np.radians(values) if factor == "twist" else values)
+        return readonly(np.stack(columns, axis=-1))
+
+    def __getitem__(self, key: str | SupportsIndex | slice) -> Any:
+        """Return an array by name, or the blade of a variant, or a list of blades."""
+        if isinstance(key, str):
+            return self._array(key)
+        if isinstance(key, slice):
+            return [self._blade(place) for place in range(*key.indices(len(self)))]
+        try:
+            place = operator.index(key)
+        except TypeError:
+            raise FamilyError(
+                f"variant: got {shown(key)}, must be a whole number or a name"
+            ) from None
+        if not -len(self) <= place < len(self):
+            raise PlaceError(f"variant: got {place}, allowed is 0 to {len(self) - 1}")
+        return self._blade(place % len(self))
+
+    def _array(self, name: str) -> Any:
+        if name in self.store:
+            return self.store[name]
+        if name in self._columns:
+            import pyarrow.parquet as pq
+
+            with pq.ParquetFile(self.path / "manifest.parquet") as file:
+                return column_values(file.read([self._columns[name]]).column(0))
+        near = suggestion(name, self.names)
+        raise FamilyError(f"{self.path}: holds no {name!r}, but {', '.join(self.names)}{near}")
+
+    @cached_property
+    def valid(self) -> Any:
+        """Which variants are sound, (variants,)."""
+        return np.asarray(self["valid"][:])
+
+    def table(self) -> Any:
+        """Return the manifest, a row a variant, as a `pyarrow.Table`."""
+        import pyarrow.parquet as pq
+
+        with pq.ParquetFile(self.path / "manifest.parquet") as file:
+            return file.read()
+
+    def split(
+        self,
+        part: str,
+        *,
+        seed: int | None = None,
+        shares: tuple[float, float, float] = SHARES,
+        sound: bool = True,
+    ) -> Indices:
+        """Return the places of the variants of "train", "validation" or "test", in order.
+
+        Parameters
+        ----------
+        part : str
+            Which.
+        seed : int, optional
+            Of the split, the family's own if not given, as the variable `split` has it.
+        shares : three floats
+            Of training, validation and test, met on average.
+        sound : bool
+            Leave out variants that are not sound.
+        """
+        one_of(part, SPLITS, "split", FamilyError)
+        seed = self.identity["seed"] if seed is None else whole(seed, "seed", FamilyError)
+        places = np.arange(len(self))
+        parts = split_of(places, seed, shares)
+        wanted: Indices = places[(parts == SPLITS.index(part)) & (self.valid | (not sound))]
+        return wanted
+
+    def batches(
+        self,
+        names: Sequence[str] = ("parameters", "sections"),
+        size: int = 64,
+        *,
+        places: Indices | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> Iterator[dict[str, Any]]:
+        """Give arrays of some variants after others, by name: what a training loop reads.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Arrays of the store, or "parameters".
+        size : int
+            Variants at once; the last ones may be fewer.
+        places : (b,) array of int, optional
+            Which variants, all if not given: `split` gives them.
+        rng : numpy.random.Generator, optional
+            Shuffles: shards in any order, and the variants of some shards that lie in memory
+            together, so that each shard is read once.
+        """
+        from bladegen.families.dataset.reading import batches
+
+        return batches(self, tuple(names), size, places, rng)
+
+    def _blade(self, place: int) -> Blade:
+        made: Blade = self._planned.variant(place)
+        stored = np.asarray(self.store["sections"][place], dtype=np.float64)
+        apart = float(np.abs(made.sections(self._planned.eta) - stored).max())
+        if not apart <= SAME * made.length:
+            raise FamilyError(
+                f"{self.path}: variant {place} lies {apart:.2g} m off its stored sections, so the "
+                f"baseline or the space is another; load_family(path, blade=..., space=...)"
+            )
+        return made
+
+    @cached_property
+    def _planned(self) -> Family:
+        """The family, its variants where the manifest says that they lie."""
+        blade = self._baseline
+        space = self.space if self.space is not None else self._known_space
+        columns = dict(zip(self.factors, self.parameters.T, strict=True))
+        return Family(
+            blade,
+            space,
+            tabulated(space, columns),
+            Window(*self.identity["window"]),
+            np.asarray(self.store["eta"][:]),
+            "keep",
+            chord_line=self.identity["chord_line"],
+        )
+
+    @cached_property
+    def _known_space(self) -> ShapeSpace | None:
+        own = self.path / "space.npz"
+        if self.identity["space_fingerprint"] is None:
+            return None
+        return ShapeSpace.load(own) if own.is_file() else ShapeSpace.bundled()
+
+    @cached_property
+    def _baseline(self) -> Blade:
+        if self.baseline is not None:
+            return self.baseline
+        settings = self.attributes.get("baseline_settings", {})
+        name = self.attributes.get("baseline", self.identity["blade"])
+        if name not in bundled() or any(key.startswith("change1.") for key in settings):
+            raise FamilyError(
+                f"{self.path}: its baseline {name!r} is no bundled blade; "
+                "load_family(path, blade=...) takes it"
+            )
+        made = Blade.from_definition(
+            read(name),
+            landmarks=self.identity["landmarks"],
+            path=settings.get("path", DEFAULT),
+            planes=PLANES[settings.get("planes", "flange")],
+        )
+        return made.mirror_image() if settings.get("mirrored") else made
+
+    def dataset(self) -> Any:
+        """Return the store as an `xarray.Dataset`, where xarray is installed."""
+        import xarray
+
+        return xarray.open_zarr(self.path / "sections.zarr")
+
+
+def load_family(
+    path: str | Path, *, blade: Blade | None = None, space: ShapeSpace | None = None
+) -> LoadedFamily:
+    """Open a family that `bladegen family` wrote.
+
+    Parameters
+    ----------
+    path : str or Path
+        Its folder.
+    blade : Blade, optional
+        The baseline, for blades by index, where it is no bundled one.
+    space : ShapeSpace, optional
+        The space of its modes, where the folder does not tell it.
+
+    Raises
+    ------
+    FamilyError
+        If the folder holds no family that is whole.
+    """
+    folder = Path(path)
+    folder = folder.parent if folder.name == "sections.zarr" else folder
+    told, manifest = folder / "family.json", folder / "manifest.parquet"
+    if not told.is_file():
+        raise FamilyError(f"{path}: holds no family; `bladegen family BLADE -o {path}` makes one")
+    if not manifest.is_file():
+        raise FamilyError(
+            f"{path}: its family is not whole; the same command with --resume goes on"
+        )
+    try:
+        identity = json.loads(content_of(told, MOST))
+        factors = dict(identity["factors"])
+    except (ValueError, KeyError, TypeError):
+        raise FamilyError(f"{told}: says not what the family is") from None
+    return LoadedFamily(folder, {**identity, "factors": factors}, blade, space)

@@ -1,0 +1,162 @@
+"""A family's store as one dataset: every variable an array with dimensions, units and a name.
+
+In: a folder whose sections and manifest are whole.  Out: `sections.zarr` (Zarr format 3) with what
+the manifest holds beside the sections, the split, attributes after CF, and its metadata in one
+place, so that ``xarray.open_zarr(folder / "sections.zarr")`` opens it in one read.  Rows are read
+and written some thousands at a time.
+"""
+
+import warnings
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladegen.errors import ExportError
+from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
+from bladegen.families.dataset.variables import COORDINATES, Variable, parameter, variables
+
+__all__ = ["column_values", "complete", "is_complete", "opened"]
+
+DIMENSIONS = ("variant", "span", "landmark", "xyz")
+CONVENTIONS = "CF-1.11"
+CHUNK = 2**17  # numbers in a chunk of an array beside the sections: a megabyte
+FIXED = {  # arrays that are there before the first variant is
+    "eta": (("span",), "span fraction, root to tip", "1"),
+    "u": (("landmark",), "landmark parameter, suction side to pressure side", "1"),
+    "xyz": (("xyz",), "axes of the blade frame: to suction, to the trailing edge, to the tip", ""),
+}
+
+
+def opened(store: Path, *, writing: bool = False) -> Any:
+    """Return the group of a store, its arrays looked up one by one if it is written to."""
+    import zarr
+
+    if writing:
+        return zarr.open_group(store, mode="r+", use_consolidated=False)
+    return zarr.open_group(store, mode="r")
+
+
+def is_complete(group: Any) -> bool:
+    """Tell whether a store holds the variables of all its variants."""
+    return "variant" in group and group.attrs.get("variants") == group["sections"].shape[0]
+
+
+def complete(
+    store: Path, manifest: Path, identity: Mapping[str, Any], about: Mapping[str, Any]
+) -> None:
+    """Add to a store what the manifest holds, and gather its metadata.
+
+    Parameters
+    ----------
+    store, manifest : Path
+        `sections.zarr` with all sections, and `manifest.parquet`.
+    identity : mapping
+        What `family.json` holds.
+    about : mapping
+        Attributes of the dataset: title, source, command and so on.
+
+    Raises
+    ------
+    ExportError
+        If the store cannot be written.
+    """
+    import pyarrow.parquet as pq
+    import zarr
+
+    group = opened(store, writing=True)
+    if is_complete(group):
+        return
+    try:
+        with pq.ParquetFile(manifest) as file, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Zarr's, that consolidated metadata may change
+            wanted = variables(file.schema_arrow.names, list(identity["factors"]))
+            _describe(group)
+            _fill(group, file, wanted, int(identity["seed"]))
+            names = [parameter(factor).name for factor in identity["factors"]]
+            group.attrs.update(
+                {**about, **_said(wanted, names), "variants": file.metadata.num_rows}
+            )
+            zarr.consolidate_metadata(group.store)
+    except OSError as error:
+        raise ExportError(f"{store}: cannot be written: {error.strerror or error}") from None
+
+
+def _said(wanted: list[Variable], parameters: list[str]) -> dict[str, Any]:
+    names = [one.name for one in wanted if one.name in COORDINATES and one.name != "variant"]
+    return {
+        "Conventions": CONVENTIONS,
+        "parameters": parameters,
+        "coordinates": " ".join([*names, *(name for name in COORDINATES if name in FIXED)]),
+    }
+
+
+def _describe(group: Any) -> None:
+    """Say what the sections and their axes are."""
+    group["sections"].attrs.update(
+        {"long_name": "points of the sections, blade frame", "units": "m"}
+    )
+    axes = group.require_array("xyz", shape=(3,), dtype="str", dimension_names=("xyz",))
+    axes[:] = np.array(["x", "y", "z"])
+    for name, (dims, long_name, units) in FIXED.items():
+        if group[name].metadata.dimension_names is None:  # of families before version 2
+            values = group[name][:]
+            group.create_array(name, data=values, dimension_names=dims, overwrite=True)
+        group[name].attrs.update({"long_name": long_name} | ({"units": units} if units else {}))
+
+
+def _fill(group: Any, file: Any, wanted: list[Variable], seed: int) -> None:
+    """Write all variables, some rows at a time."""
+    count, arrays = file.metadata.num_rows, {}
+    lengths = {"variant": count, "span": group["sections"].shape[1]}
+    rows = max(1, CHUNK // lengths["span"])
+    split = Variable("split", "", ("variant",), f"{', '.join(SPLITS)}: {SHARES} on average")
+    kinds = {
+        one.name: column_values(file.schema_arrow.empty_table()[one.column]).dtype for one in wanted
+    }
+    for one in [*wanted, split]:
+        kind = kinds.get(one.name, np.dtypes.StringDType())
+        shape = tuple(lengths[name] for name in one.dims)
+        arrays[one.name] = group.create_array(
+            one.name,
+            shape=shape,
+            dtype="str" if isinstance(kind, np.dtypes.StringDType) else kind,
+            chunks=(min(max(rows, 1 if len(shape) > 1 else CHUNK), count), *shape[1:]),
+            dimension_names=one.dims,
+            attributes=one.attributes,
+            overwrite=True,
+        )
+    for start, table in _tables(file, rows):
+        end = start + len(table)
+        for one in wanted:
+            arrays[one.name][start:end] = column_values(table[one.column])
+        parts = split_of(np.arange(start, end), seed)
+        arrays["split"][start:end] = np.array(SPLITS, dtype=np.dtypes.StringDType())[parts]
+
+
+def _tables(file: Any, rows: int) -> Iterator[tuple[int, Any]]:
+    """Read a manifest's row groups in turn, joined to at least so many rows: where, and they."""
+    import pyarrow as pa
+
+    start, held = 0, []
+    for number in range(file.num_row_groups):
+        held.append(file.read_row_group(number))
+        if sum(map(len, held)) >= rows or number == file.num_row_groups - 1:
+            joined = pa.concat_tables(held)
+            yield start, joined
+            start, held = start + len(joined), []
+
+
+def column_values(column: Any) -> Any:
+    """Return a manifest's column as an array: numbers, flags, matrices or texts."""
+    import pyarrow as pa
+
+    kind = column.type
+    if pa.types.is_string(kind):
+        return np.array(column.to_pylist(), dtype=np.dtypes.StringDType())
+    whole = column.combine_chunks()
+    if pa.types.is_fixed_size_list(kind):
+        flat = whole.flatten().to_numpy(zero_copy_only=False)
+        return flat.reshape(-1, kind.list_size)
+    return whole.to_numpy(zero_copy_only=False)

@@ -1,0 +1,56 @@
+"""The dataset of a family whose sections and manifest are whole: arrays, card, space."""
+
+from typing import Any
+
+import numpy as np
+
+from bladegen.exports.provenance import blade_settings, made_from
+from bladegen.families.dataset.card import card
+from bladegen.families.dataset.store import complete
+from bladegen.families.folder import read_manifest
+from bladegen.families.order import Order
+from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.support.files import replacing
+
+__all__ = ["CARD", "about", "write_dataset"]
+
+CARD, SPACE = "CARD.md", "space.npz"
+
+
+def write_dataset(order: Order) -> None:
+    """Add to a family's store what its manifest holds, and write the card beside it.
+
+    Raises
+    ------
+    ExportError
+        If something cannot be written.
+    """
+    place, identity = order.place, order.identity
+    told = about(order)
+    complete(place.store, place.manifest, identity, told)
+    space = order.family.space
+    if space is not None and space != ShapeSpace.bundled().at(space.u) and space.is_own:
+        space.save(place.path / SPACE)
+    rows = read_manifest(place, ("valid", "attempts"))
+    text = card(identity, told, int(rows["valid"].sum()), int(np.sum(rows["attempts"])))
+    with replacing(place.path / CARD) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def about(order: Order) -> dict[str, Any]:
+    """Return what a family's dataset says of itself: the same wherever it is made."""
+    blade, design = order.family.blade, order.family.design
+    made = made_from(blade, {}, order.options.command)
+    return {
+        "title": f"{len(design)} variants of {blade.name}",
+        "source": f"bladegen {made.version}",
+        "bladegen_version": made.version,
+        "command": made.command,
+        "design": design.kind,
+        "seed": design.seed if design.seed < 2**63 else str(design.seed),
+        "baseline": blade.definition.name,
+        "baseline_file": made.source,
+        "baseline_sha256": made.sha256,
+        "baseline_settings": blade_settings(blade),
+        "made_from": made.text,
+    }

@@ -1,0 +1,293 @@
+"""A family's folder as one dataset, held against xarray and the family that it was made from."""
+
+import json
+import shutil
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+import xarray
+import zarr
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+from typer.testing import CliRunner
+
+import bladegen as bg
+from bladegen.cli import commands
+from bladegen.errors import FamilyError
+from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
+from bladegen.families.order import Order
+from bladegen.families.run import run
+from bladegen.formats.bundled import bundled
+
+COUNT, SPANS = 70, 16  # more than a shard
+BOUNDS = {"twist": (-0.02, 0.03), "thickness": (0.9, 1.1)}
+
+
+@pytest.fixture(scope="module")
+def planned():
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
+    how = {"count": COUNT, "seed": 7, "spans": SPANS, "reach": 0.3, "bounds": BOUNDS}
+    return bg.family(blade, bg.ShapeSpace.bundled(), **how)
+
+
+@pytest.fixture(scope="module")
+def folder(planned, tmp_path_factory):
+    target = tmp_path_factory.mktemp("dataset") / "family"
+    assert run(Order(planned, target)) == COUNT
+    return target
+
+
+def test_xarray_opens_a_family_as_one_dataset(folder, planned):
+    with xarray.open_zarr(folder / "sections.zarr", consolidated=True) as data:
+        assert dict(data.sizes) == {"variant": COUNT, "span": SPANS, "landmark": 101, "xyz": 3}
+        assert data["sections"].dims == ("variant", "span", "landmark", "xyz")
+        assert set(data.coords) == {"variant", "name", "eta", "u", "xyz"}
+        assert data["xyz"].values.tolist() == ["x", "y", "z"]
+        assert data.attrs["parameters"] == [
+            "t1",
+            "t2",
+            "t3",
+            "t4",
+            "thickness_change",
+            "twist_change",
+        ]
+        block = planned.block(np.arange(5), dtype=np.float32, measured=True)
+        assert_array_equal(data["sections"][:5], block.batch.sections)
+        assert_array_equal(data["chord"][:5], block.batch.chord)
+        assert_allclose(np.radians(data["twist"][:5]), block.batch.twist, rtol=0, atol=1e-15)
+        assert_array_equal(data["thickness"][:5], block.batch.relative_thickness)
+        assert_array_equal(data["area"][:5], block.batch.measures[..., 0])
+        values = planned.block(np.arange(COUNT)).values
+        for name, column in zip(data.attrs["parameters"][:5], values.T, strict=False):
+            assert_array_equal(data[name], column)
+        near = data.set_xindex("eta").sel(eta=0.5, method="nearest")
+        assert abs(float(near["eta"]) - 0.5) < 1.0 / SPANS
+
+
+def test_every_variable_says_what_it_is(folder):
+    group = zarr.open_group(folder / "sections.zarr", mode="r")
+    for name, array in group.arrays():
+        assert array.metadata.dimension_names is not None, name
+        assert array.attrs["long_name"], name
+        numeric = np.issubdtype(array.dtype, np.floating)
+        assert not numeric or array.attrs["units"], name
+    said = group.attrs
+    assert said["seed"] == 7
+    assert said["baseline"] == "nrel5mw"
+    assert said["bladegen_version"] == bg.__version__
+    assert "made_from" in said
+    assert group.metadata.consolidated_metadata is not None
+
+
+def test_a_manifests_columns_are_in_the_dataset(folder):
+    table = pq.read_table(folder / "manifest.parquet")
+    family = bg.load_family(folder)
+    assert family.table().equals(table)
+    assert set(family._columns.values()) == set(table.column_names) - {"seed"}
+    for name, column in family._columns.items():
+        stored, wanted = np.asarray(family[name][:]), table[column].to_pylist()
+        assert stored.tolist() == wanted, name
+
+
+def test_a_loaded_family_gives_blades_by_index(folder, planned):
+    family = bg.load_family(folder)
+    assert len(family) == COUNT
+    assert_allclose(family.parameters, planned.block(np.arange(COUNT)).values, rtol=0, atol=1e-15)
+    for place in (3, -1):
+        assert family[place].name == planned[place].name
+        apart = family[place].sections(planned.eta) - family["sections"][place]
+        assert np.abs(apart).max() < 1e-5
+    assert [one.name for one in family[1:3]] == ["nrel5mw-00001", "nrel5mw-00002"]
+    assert "nrel5mw" in repr(family)
+    assert family.dataset().sizes["variant"] == COUNT
+    assert len(bg.load_family(folder / "sections.zarr")) == COUNT
+
+
+def test_a_blade_that_does_not_lie_on_its_stored_sections_is_refused(folder, planned):
+    other = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=101)
+    with pytest.raises(FamilyError, match="off its stored sections"):
+        bg.load_family(folder, blade=other)[0]
+    assert bg.load_family(folder, blade=planned.blade, space=planned.space)[0].name
+
+
+def test_baselines_and_spaces_of_ones_own(tmp_path):
+    from dataclasses import replace
+
+    plain = bg.ShapeSpace.bundled()
+    own = replace(plain, modes=plain.modes[:2], coordinates=plain.coordinates[:, :2])
+    definition = replace(bg.read("nrel5mw"), name="mine")
+    mirrored = bg.Blade.from_definition(definition, path="geodesic").mirror_image()
+    made = bg.family(mirrored, own, count=2, spans=12, reach=0.2)
+    run(Order(made, tmp_path))
+    with pytest.raises(
+        FamilyError, match=r"'mine' is no bundled blade; load_family\(path, blade=\.\.\.\)"
+    ):
+        bg.load_family(tmp_path)[0]
+    family = bg.load_family(tmp_path, blade=mirrored)
+    assert_allclose(family[1].sections([0.7]), made[1].sections([0.7]), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", bundled())
+def test_settings_of_a_bundled_baseline_are_found_again(name, tmp_path):
+    blade = bg.Blade.from_definition(bg.read(name), landmarks=61, path="geodesic").mirror_image()
+    made = bg.family(blade, count=1, spans=16, bounds={"chord": (0.95, 1.0)}, design="box")
+    run(Order(made, tmp_path))
+    assert bg.load_family(tmp_path)[0].name == made[0].name
+
+
+def test_families_of_version_1_are_read(folder, tmp_path):
+    old = tmp_path / "old"
+    shutil.copytree(folder, old)
+    (old / "CARD.md").unlink()
+    shutil.rmtree(old / "sections.zarr")
+    store = zarr.open_group(old / "sections.zarr", mode="w", zarr_format=3)
+    now = zarr.open_group(folder / "sections.zarr", mode="r")
+    store.attrs.update({"unit": "m", "axes": "variant, span, landmark, xyz"})
+    for array in ("sections", "eta", "u"):
+        store.create_array(array, data=now[array][:])
+    new, was = bg.load_family(folder), bg.load_family(old)
+    assert set(was.names) == set(new.names) - {"split", "xyz"}
+    for name in was.names:
+        assert_array_equal(np.asarray(was[name][:]), np.asarray(new[name][:]))
+    assert was[2].name == new[2].name
+    assert_array_equal(was.split("test"), new.split("test"))
+
+
+def test_a_whole_family_of_version_1_becomes_a_dataset_when_it_is_resumed(
+    folder, planned, tmp_path
+):
+    old = tmp_path / "old"
+    shutil.copytree(folder, old)
+    store = zarr.open_group(old / "sections.zarr", mode="r+", use_consolidated=False)
+    for name in [n for n in store.array_keys() if n not in ("sections", "eta", "u")]:
+        del store[name]
+    store.attrs.put({"unit": "m", "axes": "variant, span, landmark, xyz"})
+    for name in ("eta", "u"):
+        store.create_array(name, data=store[name][:], overwrite=True)
+    assert run(Order(planned, old), resume=True) == 0
+    with (
+        xarray.open_zarr(old / "sections.zarr") as was,
+        xarray.open_zarr(folder / "sections.zarr") as new,
+    ):
+        assert was.identical(new)
+
+
+@given(st.integers(0, 2**70), st.lists(st.integers(0, 10**7), min_size=1, max_size=20))
+def test_a_variants_split_depends_on_its_place_and_the_seed_alone(seed, places):
+    together = split_of(np.array(places), seed)
+    assert_array_equal(together, [split_of(np.array([one]), seed)[0] for one in places])
+    assert set(together.tolist()) <= set(range(len(SPLITS)))
+
+
+@given(st.integers(0, 2**40))
+def test_splits_have_their_shares(seed):
+    count = 4000
+    found = np.bincount(split_of(np.arange(count), seed), minlength=3) / count
+    assert_allclose(found, SHARES, atol=6 * np.sqrt(0.25 / count))
+    neighbour = split_of(np.arange(count), seed + 1)
+    alike = np.mean(neighbour == split_of(np.arange(count), seed))
+    assert abs(alike - sum(share**2 for share in SHARES)) < 0.06
+
+
+def test_splits_part_a_family(folder):
+    family = bg.load_family(folder)
+    parts = [family.split(name) for name in SPLITS]
+    assert_array_equal(np.sort(np.concatenate(parts)), np.arange(COUNT))
+    for name, places in zip(SPLITS, parts, strict=True):
+        assert set(family["split"][:][places].tolist()) == {name}
+    other = family.split("train", seed=8, shares=(0.5, 0.25, 0.25))
+    assert not np.array_equal(other, parts[0])
+    with pytest.raises(FamilyError, match="must be three that sum to 1"):
+        family.split("train", shares=(0.5, 0.5, 0.5))
+    with pytest.raises(FamilyError, match="allowed are train, validation, test"):
+        family.split("dev")
+
+
+@given(st.integers(1, 90), st.integers(0, 5), st.booleans())
+def test_batches_give_each_variant_once(folder, size, seed, shuffled):
+    family = bg.load_family(folder)
+    places = np.random.default_rng(seed).permutation(COUNT)[: 20 + 10 * seed]
+    rng = np.random.default_rng(seed) if shuffled else None
+    parts = list(family.batches(("variant", "parameters", "chord"), size, places=places, rng=rng))
+    sizes = [len(part["variant"]) for part in parts]
+    assert sizes[:-1] == [size] * (len(sizes) - 1)
+    assert 0 < sizes[-1] <= size
+    seen = np.concatenate([part["variant"] for part in parts])
+    assert_array_equal(np.sort(seen), np.sort(places))
+    together = np.concatenate([part["parameters"] for part in parts])
+    assert_array_equal(together, family.parameters[seen])
+    assert_array_equal(np.concatenate([part["chord"] for part in parts]), family["chord"][:][seen])
+
+
+def test_batches_are_the_same_for_the_same_generator_and_refuse_what_is_not_there(folder):
+    family = bg.load_family(folder)
+    one, two, three = (
+        np.concatenate(
+            [
+                part["variant"]
+                for part in family.batches(("variant",), 8, rng=np.random.default_rng(s))
+            ]
+        )
+        for s in (1, 1, 2)
+    )
+    assert_array_equal(one, two)
+    assert not np.array_equal(one, three)
+    with pytest.raises(FamilyError, match="size: got 0"):
+        next(family.batches(size=0))
+    with pytest.raises(FamilyError, match=r"holds no 'cord', but .* did you mean chord"):
+        next(family.batches(("cord",)))
+
+
+def test_the_card_says_what_a_reader_needs(folder):
+    text = (folder / "CARD.md").read_text(encoding="utf-8")
+    for wanted in (
+        "# 70 variants of nrel5mw",
+        "xarray.open_zarr",
+        "bg.load_family",
+        "seed 7",
+        "## Licence and citation",
+        "## Splits",
+        "| thickness | 0.9 | 1.1 | factor |",
+        f"{COUNT} of {COUNT} are sound",
+    ):
+        assert wanted in text, wanted
+
+
+@pytest.mark.parametrize(
+    ("broken", "said"),
+    [
+        ("family.json", "holds no family; `bladegen family"),
+        ("manifest.parquet", "its family is not whole; the same command with --resume"),
+    ],
+)
+def test_folders_that_hold_no_whole_family_say_so(folder, tmp_path, broken, said):
+    shutil.copytree(folder, tmp_path / "part", ignore=shutil.ignore_patterns(broken))
+    with pytest.raises(FamilyError, match=said):
+        bg.load_family(tmp_path / "part")
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"seed": 1}', '{"factors": 3}'])
+def test_a_damaged_description_is_refused(folder, tmp_path, text):
+    (tmp_path / "family.json").write_text(text)
+    (tmp_path / "manifest.parquet").write_bytes(b"")
+    with pytest.raises(FamilyError, match="says not what the family is"):
+        bg.load_family(tmp_path)
+
+
+def test_what_a_family_does_not_hold_is_refused(folder):
+    family = bg.load_family(folder)
+    with pytest.raises(IndexError, match="allowed is 0 to 69"):
+        family[COUNT]
+    with pytest.raises(FamilyError, match="must be a whole number or a name"):
+        family[1.5]
+
+
+def test_the_command_is_told_in_the_dataset(tmp_path):
+    words = ["family", "nrel5mw", "-o", str(tmp_path / "f"), "--count", "2", "--spans", "12"]
+    result = CliRunner().invoke(commands.app, [*words, "--reach", "0.2"])
+    assert result.exit_code == 0, result.output
+    with xarray.open_zarr(tmp_path / "f" / "sections.zarr") as data:
+        assert data.attrs["command"] == "bladegen family nrel5mw --count 2 --reach 0.2 --spans 12"
+    assert "seed" in json.loads((tmp_path / "f" / "family.json").read_text())

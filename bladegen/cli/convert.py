@@ -1,5 +1,6 @@
 """The command `bladegen convert`: a blade from one file format to another."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -35,8 +36,16 @@ def convert(
     polars: Polars = None,
     reynolds: Reynolds = None,
     airfoils: Airfoils = None,
+    hub_radius: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LENGTH",
+            help="From the axis to the root, instead of the definition's or where it has none; 2m.",
+        ),
+    ] = None,
 ) -> None:
     """Convert a blade between file formats, and say what the new one cannot hold."""
+    from bladegen.cli.options.parsing import metres
     from bladegen.errors import ExportError
     from bladegen.exports.definitions import write, write_into
     from bladegen.formats.reading import read
@@ -50,6 +59,9 @@ def convert(
     with progress_bar() as progress:
         progress(f"reading {source}")
         definition = read(source, airfoils=airfoils)
+        if hub_radius is not None:
+            given = metres(hub_radius, "hub-radius", example="2m")
+            definition = replace(definition, rotor=replace(definition.rotor, hub_radius=given))
         ways: dict[str, Any] = {"polars": polars, "reynolds": reynolds, "progress": progress}
         if into is None:
             findings = write(definition, target, format=row.name, command=COMMAND.get(), **ways)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import DefinitionError, ExportError
+from bladegen.formats.actuator_lines import row as actuator_lines
 from bladegen.formats.airfoils import row as airfoils
 from bladegen.formats.common.document import Notes
 from bladegen.formats.format import Format, Reader
@@ -35,6 +36,7 @@ FORMATS = (
     numad.FORMAT,
     tables.FORMAT,
     airfoils.FORMAT,
+    actuator_lines.FORMAT,
 )
 
 

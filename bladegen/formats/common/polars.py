@@ -5,16 +5,18 @@ cannot be read is left out, and said.  Files of tools that do not run without ar
 """
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from bladegen.airfoils.polars import Polar
 from bladegen.definition.blade_definition import BladeDefinition
+from bladegen.definition.blending import Between
 from bladegen.errors import DefinitionError, ExportError
 from bladegen.formats.common.document import Node, Notes, Range
 
-__all__ = ["polars", "require_polars"]
+__all__ = ["QUARTER", "about_quarter", "polars", "require_polars"]
 
 TURN = 180.0 + 1e-3
 ANGLE = {"deg": Range(-TURN, TURN, "deg"), "rad": Range(-math.pi - 1e-4, math.pi + 1e-4, "rad")}
@@ -22,6 +24,8 @@ COEFFICIENT = Range(-100.0, 100.0)
 REYNOLDS = Range(0.0, 1e10)
 PARAMETER = Range(-1e6, 1e6)
 GIVEN = ("re", "cl", "cd", "cm")
+QUARTER = 0.25  # of the chord
+TURNS = np.radians(np.arange(-180.0, 181.0, 5.0))
 SHOWN = 4  # airfoils that a message names
 
 
@@ -109,3 +113,36 @@ def require_polars(definition: BladeDefinition, path: Path, tool: str) -> None:
             f"{path}: {tool} needs polars, {', '.join(bare[:SHOWN])} have none; --polars estimate "
             "makes some"
         )
+
+
+def about_quarter(place: Between, reynolds: float) -> tuple[Polar | None, bool]:
+    """Return one polar at a place along the span, its moment about the quarter chord.
+
+    Parameters
+    ----------
+    place : Between
+        Between which airfoils.
+    reynolds : float
+        Of the chord; of several tables of the first configuration the nearest one is taken.
+
+    Returns
+    -------
+    polar : Polar or None
+        None where an airfoil has none.
+    moved : bool
+        Whether its moment was about another point, from which it was brought here.
+    """
+    known = place.polars()
+    kept = [polar for polar in known if polar.configuration == known[0].configuration]
+    if not kept:
+        return None, False
+    polar = min(kept, key=lambda p: abs(np.log((p.reynolds or reynolds) / reynolds)))
+    centre = place.centre
+    if centre is None or centre == QUARTER or polar.is_estimate:
+        return polar, False
+    inner = TURNS[(polar.alpha[0] < TURNS) & (polar.alpha[-1] > TURNS)]
+    alpha = np.union1d(polar.alpha, inner)  # the normal force turns with the angle
+    cl, cd, cm = polar.at(alpha)
+    normal = cl * np.cos(alpha) + cd * np.sin(alpha)
+    moment = cm - (centre - QUARTER) * normal
+    return replace(polar, alpha=alpha, cl=cl, cd=cd, cm=moment), True

@@ -18,14 +18,14 @@ from bladegen.definition.blade_definition import THICKNESS_RIPPLE, BladeDefiniti
 from bladegen.definition.blending import between, completed
 from bladegen.definition.estimates import CYLINDER_DRAG, chord_reynolds
 from bladegen.formats.common.number_text import aligned, exact, one_line
-from bladegen.formats.hawc2.polar_reading import QUARTER, RE_MARK, SOURCE_MARK
+from bladegen.formats.common.polars import about_quarter
+from bladegen.formats.hawc2.polar_reading import RE_MARK, SOURCE_MARK
 from bladegen.support.arrays import Array
 
 __all__ = ["Sets", "profile_sets"]
 
 RIPPLE = 100.0 * THICKNESS_RIPPLE  # % of thickness; less is no change
 ROUND = 100.0  # % thick: a cylinder
-TURNS = np.radians(np.arange(-180.0, 181.0, 5.0))
 DIGITS = 12  # of angles in degrees
 
 
@@ -92,12 +92,11 @@ def profile_sets(
     moved: dict[str, None] = {}
     for at, name in stations:
         place = between(definition, at)
-        polar = _chosen(place.polars(), chord_reynolds(definition, at))
+        polar, brought = about_quarter(place, chord_reynolds(definition, at))
         if polar is None:
             return None
-        centre = place.centre
-        if centre is not None and centre != QUARTER and not polar.is_estimate:
-            polar, moved[name] = _about_quarter(polar, centre), None
+        if brought:
+            moved[name] = None
         thickness = 100.0 * float(np.interp(at, eta, rthick))
         profiles.append(_Profile(at, name, thickness, completed(polar)))
     runs = _runs(profiles)
@@ -108,23 +107,6 @@ def profile_sets(
         rows = 100.0 * rthick[numbers == k + 1]
         sets.append(_whole(run.profiles, float(rows.min()) if rows.size else ROUND, round_))
     return Sets(_lines(sets), numbers.tolist(), len(sets), tuple(moved))
-
-
-def _chosen(polars: Sequence[Polar], reynolds: float) -> Polar | None:
-    """Return the polar of the first configuration whose Reynolds number is nearest."""
-    kept = [polar for polar in polars if polar.configuration == polars[0].configuration]
-    if not kept:
-        return None
-    return min(kept, key=lambda p: abs(np.log((p.reynolds or reynolds) / reynolds)))
-
-
-def _about_quarter(polar: Polar, centre: float) -> Polar:
-    """Return a polar whose moment is about the quarter chord instead of `centre`."""
-    inner = TURNS[(polar.alpha[0] < TURNS) & (polar.alpha[-1] > TURNS)]
-    alpha = np.union1d(polar.alpha, inner)  # the normal force turns with the angle
-    cl, cd, cm = polar.at(alpha)
-    normal = cl * np.cos(alpha) + cd * np.sin(alpha)
-    return replace(polar, alpha=alpha, cl=cl, cd=cd, cm=cm - (centre - QUARTER) * normal)
 
 
 def _runs(profiles: Sequence[_Profile]) -> list[_Run]:

@@ -4,10 +4,14 @@ import os
 import subprocess
 import sys
 import tarfile
+import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
+import yaml
+from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 
 import bladegen
 
@@ -145,3 +149,33 @@ def test_the_core_alone_reads_perturbs_and_writes(dist, tmp_path):
         assert said.returncode == 1
         assert len(said.stderr.strip().splitlines()) == 1
         assert "pip install" in said.stderr
+
+
+def test_the_conda_recipe_asks_for_what_the_package_asks_for():
+    """Names differ from the package index's where conda-forge has others."""
+    recipe = yaml.safe_load((ROOT / "packaging/conda/recipe.yaml").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    ours = {Requirement(text).name.lower(): Requirement(text) for text in project["dependencies"]}
+    others = {"ocp": "cadquery-ocp", "matplotlib-base": "matplotlib"}
+    theirs = {}
+    for text in recipe["requirements"]["run"]:
+        name, _, allowed = text.partition(" ")
+        theirs[others.get(name, name)] = SpecifierSet(allowed)
+    assert theirs.pop("python") == SpecifierSet(project["requires-python"])
+    assert theirs == {name: requirement.specifier for name, requirement in ours.items()}
+    assert recipe["context"]["version"] == bladegen.__version__
+
+
+def test_the_container_holds_what_the_build_reads():
+    """What the Dockerfile copies is not kept back, and is all that hatchling asks for."""
+    lines = (ROOT / "Dockerfile").read_text(encoding="utf-8").splitlines()
+    copied = {Path(word) for line in lines if line.startswith("COPY ") for word in line.split()[1:]}
+    kept = {
+        Path(line[1:])
+        for line in (ROOT / ".dockerignore").read_text(encoding="utf-8").splitlines()
+        if line.startswith("!")
+    }
+    needed = {Path(name) for name in ("bladegen", "blades", "LICENSE", "README.md", "locks")}
+    assert needed <= copied
+    assert needed <= kept
+    assert all((ROOT / path).exists() for path in kept)

@@ -6,6 +6,7 @@ the places on the suction and the pressure side, x to the trailing edge,
     X(s) = x(r),        Y'(s) x'(r) = y'(r) X'(s)
 
 are solved by Newton's method between the landmarks nearest to the place, which are found first.
+Where other landmarks may be as near to it, all of them are tried (`Cubics.height`).
 """
 
 from typing import NamedTuple
@@ -13,12 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bladegen.airfoils.slopes import SplineSlopes
-from bladegen.curves.cubics import Cubics, pieces
+from bladegen.curves.cubics import Cubics, pieces, rivals
 from bladegen.support.arrays import Array, Indices, Mask
 
 __all__ = ["Places", "thickest", "thickest_again"]
 
-REACH = 6  # landmarks either side of the thickest pair, among which the place is sought
+REACH = 12  # landmarks either side of the thickest pair, among which the place is sought
 FEWEST = 8 * REACH  # landmarks of a section that is measured so
 ITERATIONS = 10  # four are usual
 SETTLED = 1e-7  # of the way between landmarks; the step after is a thousand squares of it
@@ -33,7 +34,7 @@ class Places(NamedTuple):
     height : (k,) array
         Between the sides, normal to the direction.
     settled : (k,) array of bool
-        Where the landmarks nearest to it are known.
+        Where the landmarks nearest to it are known, and alone.
     upper, lower : (k,) arrays of int
         The landmarks nearest to it on the suction and on the pressure side.
     off : (2, k) array
@@ -77,8 +78,9 @@ def thickest(slopes: SplineSlopes, planes: Array, along: Array) -> Places:
     )
     if n >= FEWEST:
         best = np.minimum(np.maximum(best, REACH + 1), middle - REACH - 2)
-        upper, lower, off = _nearest(planes, axes, best)
-        places = _followed(slopes, planes, axes, Places(*places[:2], upper, lower, off, pair))
+        upper, lower, off, alone = _nearest(planes, axes, best)
+        near = Places(places.height, alone, upper, lower, off, pair)
+        places = _followed(slopes, planes, axes, near)
     rows = np.flatnonzero(~places.settled)
     if rows.size:
         some = planes[:, rows]
@@ -117,11 +119,13 @@ def _followed(slopes: SplineSlopes, planes: Array, axes: Array, near: Places) ->
     points = turn @ planes[:, both[:, None], around].swapaxes(0, 1)
     rates = turn @ slopes.around(planes, both, landmarks).swapaxes(0, 1)
     height, settled, off = _parallel(slopes.u, points, rates, landmarks, near.off.reshape(-1))
+    settled &= near.settled
     return Places(height, settled, near.upper, near.lower, off.reshape(2, -1), near.pair)
 
 
-def _nearest(planes: Array, axes: Array, best: Indices) -> tuple[Indices, Indices, Array]:
-    """Return the landmarks nearest to thickest places, and by how many landmarks they are missed.
+def _nearest(planes: Array, axes: Array, best: Indices) -> tuple[Indices, Indices, Array, Mask]:
+    """Return the landmarks nearest to thickest places, by how many landmarks they are missed, and
+    where no others may be as near.
 
     From the thickest pairs, by landmarks alone.
     """
@@ -139,10 +143,11 @@ def _nearest(planes: Array, axes: Array, best: Indices) -> tuple[Indices, Indice
         offset = np.fmin(np.fmax(0.5 * (low - high) / (low - 2.0 * here + high), -0.5), 0.5)
         passed = 2.0 * apart[rows, 0, inner + 1] / ahead[rows, 0, inner] - offset
         passed = np.fmin(np.fmax(passed, 1 - count), count - 1)  # a number, whatever it was
+        alone: Mask = ~np.any(rivals(heights, inner), axis=1)
     steps = np.rint(passed)
     upper = best + inner - REACH
     lower = np.minimum(np.maximum(n - 1 - upper + steps.astype(np.int64), n // 2 + 1), n - 2)
-    return upper, lower, np.array([offset, passed - steps])
+    return upper, lower, np.array([offset, passed - steps]), alone
 
 
 def _parallel(

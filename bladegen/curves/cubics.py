@@ -9,11 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.curves.roots import PARAMETER_TOLERANCE, falling
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Indices, Mask
 
-__all__ = ["Cubics", "pieces"]
+__all__ = ["Cubics", "pieces", "rivals"]
 
-WINDOW = 5  # landmarks either side of a guess in which the thickest place is sought
+WINDOW = 12  # landmarks either side of a guess in which the thickest place is sought
+APART = 2  # landmarks; nearer to the highest there is no other peak
+HIDDEN = (
+    0.5  # of the bend at a landmark: a peak rises less above it, a quarter where it is a parabola
+)
 
 
 def pieces(start: Array, end: Array, slope: Array, last: Array) -> tuple[Array, ...]:
@@ -21,6 +25,32 @@ def pieces(start: Array, end: Array, slope: Array, last: Array) -> tuple[Array, 
     secant = end - start
     bend = last + slope - 2.0 * secant
     return start, slope, secant - slope - bend, bend
+
+
+def rivals(heights: Array, best: Indices) -> Mask:
+    """Tell beside which landmarks a peak may be as high as the one beside the highest.
+
+    Parameters
+    ----------
+    heights : (k, m) array
+        At landmarks.
+    best : (k,) array of int
+        The highest's.
+
+    Returns
+    -------
+    (k, m) array of bool
+        Not of the first and the last.
+    """
+    result = np.zeros(heights.shape, dtype=bool)
+    here = heights[:, 1:-1]
+    bend = np.abs(heights[:, :-2] - 2.0 * here + heights[:, 2:])
+    places = np.arange(1, heights.shape[1] - 1)
+    level = heights[np.arange(len(heights)), best]
+    result[:, 1:-1] = (here + HIDDEN * bend > level[:, None]) & (
+        np.abs(places - best[:, None]) >= APART
+    )
+    return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,25 +84,38 @@ class Cubics:
         reach = max(0, min(WINDOW, (middle - 3) // 2))
         paired = self.points[:, :middle, 1] - self.points[:, :middle:-1, 1]
         best, rows = np.argmax(paired, axis=1), np.arange(len(paired))
+        others: list[tuple[Indices, Indices]] = []
         for _ in range(middle):
             at = np.clip(best[rows], reach + 1, max(reach + 1, middle - reach - 2))
             window = at[:, None] + np.arange(-reach, reach + 1)
             heights = Cubics(self.u, self.points[rows], self.slopes[rows])._gap(
                 self.u[window], 1.0 - self.u[window]
             )[0]
-            best[rows] = found = window[np.arange(len(rows)), np.argmax(heights, axis=1)]
+            highest = np.argmax(heights, axis=1)
+            best[rows] = found = window[np.arange(len(rows)), highest]
+            row, place = np.nonzero(rivals(heights, highest))
+            others.append((rows[row], window[row, place]))
             rows = rows[(np.abs(found - at) == reach) & (found != at)]
             if not rows.size:
                 break
 
-        height, opposite = np.empty(0), 1.0 - self.u[best]
+        height = self._climbed(best)
+        rows, places = (np.concatenate(part) for part in zip(*others, strict=True))
+        if rows.size:
+            some = Cubics(self.u, self.points[rows], self.slopes[rows])
+            np.maximum.at(height, rows, some._climbed(places))
+        return height
+
+    def _climbed(self, landmarks: Indices) -> Array:
+        """Climb from landmarks (k,) to the largest height beside them."""
+        height, opposite = np.empty(0), 1.0 - self.u[landmarks]
 
         def rising(u: Array) -> tuple[Array, Array]:
             nonlocal height, opposite
             height, slope, bend, opposite = self._gap(u, opposite)
             return slope, bend
 
-        falling(rising, self.u[best - 1], self.u[best], self.u[best + 1])
+        falling(rising, self.u[landmarks - 1], self.u[landmarks], self.u[landmarks + 1])
         return height
 
     def _gap(self, u: Array, w: Array) -> tuple[Array, Array, Array, Array]:

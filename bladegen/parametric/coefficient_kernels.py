@@ -18,7 +18,7 @@ from bladegen.variants.sizes import sizing
 
 __all__ = ["linearised", "lines_slopes"]
 
-REVISION = 10  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 11  # of all that is compiled with these: with another text it is compiled anew
 TERMS = 20  # of the series of cos S and sin S / S; principal angles below 2 rad need 14
 
 

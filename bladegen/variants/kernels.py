@@ -26,7 +26,7 @@ from bladegen.variants.sizes import chord_line, sizing
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 15  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 16  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 

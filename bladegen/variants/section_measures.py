@@ -8,6 +8,7 @@ opposite.  Splines are linear in features (`batch`), and so are their slopes at 
 from math import copysign
 from typing import NamedTuple
 
+from bladegen.curves.cubics import APART, HIDDEN, WINDOW
 from bladegen.curves.plane_maps import Numbers, turned
 from bladegen.curves.roots import ITERATIONS, PARAMETER_TOLERANCE
 from bladegen.support.arrays import Array
@@ -122,8 +123,8 @@ def thickest(s: Section, along: Numbers, work: Array) -> Numbers:
 
     The places u on the suction and the pressure side are returned besides.
 
-    Newton's method climbs from the thickest pair of landmarks, kept by bisection between places
-    where the distance rises and falls.
+    Newton's method climbs from the thickest pair of landmarks, and from those beside which a peak
+    may be as high (`cubics.rivals`).
     """
     u, points = s.u, s.points
     middle = len(u) // 2
@@ -132,8 +133,66 @@ def thickest(s: Section, along: Numbers, work: Array) -> Numbers:
         x, y = points[0, i] - points[0, -1 - i], points[1, i] - points[1, -1 - i]
         heights[i] = y * along[0] - x * along[1]
     cell = 1 + highest(heights[1 : middle - 1])[0]
+    first, last = max(cell - WINDOW, 1), min(cell + WINDOW, middle - 2)
+    level, j = -1.0, len(u) - 1 - first
+    for i in range(first, last + 1):  # at equal x, by lines between landmarks
+        x, y = turned(points[0, i], points[1, i], along)
+        start = turned(points[0, j], points[1, j], along)
+        while start[0] > x and j > middle + 1:
+            j -= 1
+            start = turned(points[0, j], points[1, j], along)
+        end = turned(points[0, j + 1], points[1, j + 1], along)
+        while end[0] < x and j < len(u) - 2:
+            j, start = j + 1, end
+            end = turned(points[0, j + 1], points[1, j + 1], along)
+        heights[i] = y - start[1] - (x - start[0]) * (end[1] - start[1]) / (end[0] - start[0])
+        if heights[i] > level:
+            level, cell = heights[i], i
+    found: Numbers = climbed(s, along, cell, u[1], u[middle - 1])
+    vie = level > found[0]  # it climbed to another peak
+    for i in range(first + 1, last):
+        vie |= rivalled(heights, i, cell)
+    if vie:
+        found = highest_peak(s, along, heights[: last + 1], first, found)
+    return found
+
+
+@compiled
+def rivalled(heights: Array, i: int, best: int) -> bool:
+    """Tell whether a peak beside landmark i may be as high as the one beside the highest."""
+    bend = abs(heights[i - 1] - 2.0 * heights[i] + heights[i + 1])
+    return bool(heights[i] + HIDDEN * bend > heights[best] and abs(i - best) >= APART)
+
+
+@compiled
+def highest_peak(s: Section, along: Numbers, heights: Array, first: int, found: Numbers) -> Numbers:
+    """Climb from each landmark from `first` on beside which the highest peak may be.
+
+    Heights are brought to those of the splines, and `found` is returned if none is higher.
+    """
+    best = first
+    for i in range(first, len(heights)):
+        heights[i] = climbed(s, along, i, s.u[i], s.u[i])[0]
+        if heights[i] > heights[best]:
+            best = i
+    for i in range(first + 1, len(heights) - 1):
+        if i == best or rivalled(heights, i, best):
+            peak = climbed(s, along, i, s.u[i - 1], s.u[i + 1])
+            if peak[0] > found[0]:
+                found = peak
+    return found
+
+
+@compiled
+def climbed(s: Section, along: Numbers, cell: int, low: float, high: float) -> Numbers:
+    """Climb from a landmark to where the distance between the sides is largest (`thickest`).
+
+    Kept by bisection between places where the distance rises and falls, which are between `low`
+    and `high`; where these are the landmark itself, the distance there is returned.
+    """
+    u = s.u
     across = len(u) - 2 - cell
-    t, w, low, high = u[cell], u[across + 1], u[1], u[middle - 1]
+    t, w = u[cell], u[across + 1]
     px, py = piece(s, cell, along)
     qx, qy = piece(s, across, along)
     height = 0.0

@@ -2,10 +2,12 @@
 
 import json
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+import trimesh
 import xarray
 import zarr
 from hypothesis import given
@@ -16,6 +18,7 @@ from typer.testing import CliRunner
 import bladegen as bg
 from bladegen.cli import commands
 from bladegen.errors import FamilyError
+from bladegen.families.dataset import graphs
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
 from bladegen.families.order import Order
 from bladegen.families.run import run
@@ -113,8 +116,6 @@ def test_a_blade_that_does_not_lie_on_its_stored_sections_is_refused(folder, pla
 
 
 def test_baselines_and_spaces_of_ones_own(tmp_path):
-    from dataclasses import replace
-
     plain = bg.ShapeSpace.bundled()
     own = replace(plain, modes=plain.modes[:2], coordinates=plain.coordinates[:, :2])
     definition = replace(bg.read("nrel5mw"), name="mine")
@@ -291,3 +292,127 @@ def test_the_command_is_told_in_the_dataset(tmp_path):
     with xarray.open_zarr(tmp_path / "f" / "sections.zarr") as data:
         assert data.attrs["command"] == "bladegen family nrel5mw --count 2 --reach 0.2 --spans 12"
     assert "seed" in json.loads((tmp_path / "f" / "family.json").read_text())
+
+
+def grown(planned, target, *counts, **how):
+    """A folder that a family was added to, again and again."""
+    for count in counts:
+        design = replace(planned.design, count=count)
+        run(Order(replace(planned, design=design), target), append=count != counts[0], **how)
+    return target
+
+
+def same_families(one, two):
+    assert (one / "manifest.parquet").read_bytes() == (two / "manifest.parquet").read_bytes()
+    assert (one / "CARD.md").read_bytes() == (two / "CARD.md").read_bytes()
+    assert json.loads((one / "family.json").read_text()) == json.loads(
+        (two / "family.json").read_text()
+    )
+    with (
+        xarray.open_zarr(one / "sections.zarr") as a,
+        xarray.open_zarr(two / "sections.zarr") as b,
+    ):
+        assert a.identical(b)
+
+
+@pytest.mark.parametrize("counts", [(5, COUNT), (64, COUNT), (1, 66, COUNT)])
+def test_a_family_that_is_added_to_is_the_one_made_at_once(folder, planned, tmp_path, counts):
+    same_families(grown(planned, tmp_path / "grown", *counts), folder)
+
+
+@pytest.mark.parametrize("last", ["_keep_parts", "replacing", "settle", "resize"])
+def test_adding_goes_on_wherever_it_was_killed(folder, planned, tmp_path, monkeypatch, last):
+    target = grown(planned, tmp_path / "killed", 66)
+
+    class KilledError(Exception):
+        pass
+
+    def killed(*_, **__):
+        raise KilledError
+
+    home = {"settle": "bladegen.families.run", "resize": "zarr.Array"}
+    where = home.get(last, "bladegen.families.growth")
+    with monkeypatch.context() as patch:
+        patch.setattr(f"{where}.{last}", killed)
+        with pytest.raises(KilledError):
+            run(Order(planned, target), append=True)
+    run(Order(planned, target), append=True)
+    same_families(target, folder)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"count": COUNT - 1}, "holds 70 variants, 69 are asked for"),
+        ({"count": 2 * COUNT, "seed": 8}, "holds another family .seed: 7 there, 8 asked for"),
+        ({"count": 2 * COUNT, "kind": "lhs"}, "depend on how many there are"),
+        ({"count": 10**6}, "names have more digits"),
+    ],
+)
+def test_what_cannot_be_added_is_refused(folder, planned, change, said):
+    before = (folder / "family.json").read_bytes()
+    other = replace(planned, design=replace(planned.design, **change))
+    with pytest.raises(FamilyError, match=said):
+        run(Order(other, folder), append=True)
+    assert (folder / "family.json").read_bytes() == before
+
+
+def test_nothing_to_add_to_is_refused(planned, tmp_path):
+    with pytest.raises(FamilyError, match="holds no family to add to"):
+        run(Order(planned, tmp_path), append=True)
+
+
+@pytest.fixture(scope="module")
+def blade():
+    return bg.Blade.from_definition(bg.read("iea15mw"), landmarks=201)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_graphs_are_the_skin_as_trimesh_sees_it(blade, mirrored):
+    sections = (blade.mirror_image() if mirrored else blade).sections(blade.stations(60))
+    normals, areas = graphs.surface(sections)
+    corners = graphs.triangles(*sections.shape[:2])
+    skin = trimesh.Trimesh(sections.reshape(-1, 3), corners, process=False)
+    assert_allclose(areas.sum(), skin.area, rtol=2e-4)
+    assert skin.volume > 0  # so its normals point outward
+    inner = normals[5:-5].reshape(-1, 3)
+    alike = np.sum(
+        inner * skin.vertex_normals.reshape(*sections.shape)[5:-5].reshape(-1, 3), axis=1
+    )
+    assert np.quantile(alike, 0.01) > 0.99
+    assert_allclose(np.linalg.norm(normals, axis=-1), 1.0, atol=1e-12)
+
+
+def test_graphs_of_a_cylinder_are_exact():
+    angle = np.linspace(0.0, 2 * np.pi, 100, endpoint=False)
+    ring = np.stack([2 * np.sin(angle), 2 * np.cos(angle), 0 * angle], axis=-1)
+    cylinder = ring + np.linspace(0.0, 3.0, 7)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    normals, areas = graphs.surface(np.stack([cylinder, 2 * cylinder]))
+    assert_allclose(normals[0], (ring / 2)[None].repeat(7, axis=0), atol=1e-12)
+    side = 2 * 100 * 2 * np.sin(np.pi / 100) * 3
+    assert_allclose(areas.sum(axis=(1, 2)), [side, 4 * side])
+    pairs = graphs.edges(7, 100)
+    assert len(np.unique(np.sort(pairs, axis=1), axis=0)) == len(pairs) == 7 * 100 + 6 * 100
+    flat = cylinder.reshape(-1, 3)
+    length = np.linalg.norm(flat[pairs[:, 0]] - flat[pairs[:, 1]], axis=1)
+    assert_allclose(np.unique(length.round(9)), [round(4 * np.sin(np.pi / 100), 9), 0.5])
+
+
+def test_a_family_with_its_graph(planned, tmp_path):
+    fewer = replace(planned, design=replace(planned.design, count=3))
+    run(Order(fewer, tmp_path / "plain"))
+    run(Order(fewer, tmp_path / "graph", graph=True))
+    plain, family = bg.load_family(tmp_path / "plain"), bg.load_family(tmp_path / "graph")
+    assert set(family.names) - set(plain.names) == {"normals", "areas", "edges", "triangles"}
+    for name, values in family.graph(2).items():
+        assert_allclose(values, plain.graph(2)[name], rtol=1e-6)
+    skin = family["areas"][:].sum(axis=(1, 2)) + family["area"][:][:, [0, -1]].sum(axis=1)
+    assert_allclose(family["surface"][:], skin, rtol=1e-3)
+    with xarray.open_zarr(tmp_path / "graph" / "sections.zarr") as data:
+        assert data["normals"].dims == data["sections"].dims
+        assert data["edges"].dims == ("edge", "end")
+    same = replace(planned, design=replace(planned.design, count=5))
+    with pytest.raises(FamilyError, match=r"another family .graph: null there"):
+        run(Order(same, tmp_path / "plain", graph=True), append=True)
+    run(Order(same, tmp_path / "graph", graph=True), append=True)
+    assert bg.load_family(tmp_path / "graph")["normals"].shape[0] == 5

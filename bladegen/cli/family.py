@@ -12,7 +12,6 @@ from bladegen.cli.options.common import (
     MAKING,
     PRODUCING,
     BladeName,
-    Formats,
     Making,
     Mirror,
     Producing,
@@ -26,6 +25,18 @@ from bladegen.errors import FamilyError
 from bladegen.support.stopping import Stopped
 
 __all__ = ["family"]
+
+GRAPH = "graph"  # a format that is no file of a variant, but arrays of the dataset
+
+
+FamilyFormats = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--format",
+        help="Files for each variant, as `build` makes them, such as step, stl, glb, yaml; graph: "
+        "normals, areas and edges of the points in the dataset. With commas, or repeated.",
+    ),
+]
 
 
 @grouped
@@ -76,7 +87,7 @@ def family(
     double: Annotated[
         bool, typer.Option("--double", help="Store sections as float64, not float32.")
     ] = False,
-    formats: Formats = None,
+    formats: FamilyFormats = None,
     producing: Producing = PRODUCING,
     making: Making = MAKING,
     mirror: Mirror = False,
@@ -89,6 +100,10 @@ def family(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with what an earlier run left.")
     ] = False,
+    append: Annotated[
+        bool,
+        typer.Option("--append", help="Add to a family: --count is the new number in all."),
+    ] = False,
 ) -> None:
     """Make a family of perturbed blades: sections, a manifest, files and a contact sheet."""
     from bladegen.cli.options.parsing import factor_bounds, factor_table, span_window
@@ -99,7 +114,9 @@ def family(
     from bladegen.support.compiled import is_kept
     from bladegen.variants import kernels
 
-    suffixes = suffixes_of(formats)
+    words = [word for text in formats or [] for word in text.split(",")]
+    graph = GRAPH in (word.strip().lower() for word in words)
+    suffixes = suffixes_of([word for word in words if word.strip().lower() != GRAPH])
     known = None
     if space is None or space.lower() != "none":
         known = ShapeSpace.bundled() if space is None else ShapeSpace.load(space)
@@ -129,6 +146,7 @@ def family(
         suffixes,
         "float64" if double else "float32",
         producing.options(),
+        graph,
     )
     if not is_kept(kernels.made):
         remark("compiling loops, once on this machine: about ten seconds")
@@ -139,6 +157,7 @@ def family(
                 jobs=jobs,
                 client=client,
                 resume=resume,
+                append=append,
                 progress=progress,
                 foretold=lambda forecast: (
                     remark(f"still to be made: {forecast}") if forecast.variants else None

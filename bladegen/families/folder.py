@@ -32,10 +32,11 @@ from bladegen.families.forecasts import NoRoomError
 from bladegen.families.identity import differences
 from bladegen.support.files import alone, folder, replacing
 
-__all__ = ["FamilyFolder", "read_manifest", "sections_digest"]
+__all__ = ["GRAPH", "FamilyFolder", "read_manifest", "sections_digest"]
 
 ZARR = "sections.zarr"
 FLOAT_TYPES = {"float32": np.float32, "float64": np.float64}
+GRAPH = {"normals": 4, "areas": 3}  # arrays beside the sections, and how many dimensions they have
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,9 @@ class FamilyFolder:
         there = {path.name for path in self.parts.glob("part-*.parquet")}
         return [i for i in range(-(-count // self.block)) if self.part(i).name not in there]
 
-    def make_sections(self, eta: Any, u: Any, count: int, dtype: str) -> None:
+    def make_sections(
+        self, eta: Any, u: Any, count: int, dtype: str, *, graph: bool = False
+    ) -> None:
         """Make the empty store of sections, if it is not there."""
         import zarr
 
@@ -151,15 +154,16 @@ class FamilyFolder:
         try:
             group = zarr.open_group(self.store, mode="a", zarr_format=3, use_consolidated=False)
             group.attrs.update({"unit": "m", "axes": "variant, span, landmark, xyz"})
-            group.require_array(
-                "sections",
-                shape=shape,
-                dtype=dtype,
-                chunks=(1, *shape[1:]),
-                shards=(self.block, *shape[1:]),
-                compressors=None,
-                dimension_names=("variant", "span", "landmark", "xyz"),
-            )
+            for name, each in {"sections": 4, **(GRAPH if graph else {})}.items():
+                group.require_array(
+                    name,
+                    shape=shape[:each],
+                    dtype=dtype if name == "sections" else "float32",
+                    chunks=(1, *shape[1:each]),
+                    shards=(self.block, *shape[1:each]),
+                    compressors=None,
+                    dimension_names=("variant", "span", "landmark", "xyz")[:each],
+                )
             for name, dimension, values in (("eta", "span", eta), ("u", "landmark", u)):
                 if name not in group:
                     group.create_array(name, data=np.array(values), dimension_names=(dimension,))
@@ -169,18 +173,25 @@ class FamilyFolder:
     @property
     def sections(self) -> Any:
         """The Zarr array of sections."""
+        return self._arrays["sections"]
+
+    @property
+    def _arrays(self) -> Any:
         import zarr
 
-        return zarr.open_group(self.store, mode="r+", use_consolidated=False)["sections"]
+        return zarr.open_group(self.store, mode="r+", use_consolidated=False)
 
-    def write_block(self, number: int, block: Block, rows: dict[str, Any]) -> None:
-        """Write a block's sections, then its part of the manifest."""
+    def write_block(
+        self, number: int, block: Block, rows: dict[str, Any], more: dict[str, Any]
+    ) -> None:
+        """Write a block's sections and what more is stored beside, then its manifest's part."""
         import pyarrow.parquet as pq
 
-        start = int(block.index[0])
+        start, arrays = int(block.index[0]), self._arrays
         try:
-            self.sections[start : start + len(block.index)] = block.batch.sections
-            _flush(self.store / "sections" / "c" / str(number))
+            for name, values in {"sections": block.batch.sections, **more}.items():
+                arrays[name][start : start + len(block.index)] = values
+                _flush(self.store / name / "c" / str(number))
         except OSError as error:
             raise ExportError(
                 f"{self.store}: cannot be written: {error.strerror or error}"

@@ -12,7 +12,8 @@ from bladegen.errors import PerturbationError, PromiseError
 from bladegen.exports import exporters
 from bladegen.exports.products import Products
 from bladegen.families.block import Block
-from bladegen.families.folder import FLOAT_TYPES
+from bladegen.families.dataset.graphs import surface
+from bladegen.families.folder import FLOAT_TYPES, GRAPH
 from bladegen.families.manifest_rows import drawn_again, rows_of
 from bladegen.families.order import Order
 from bladegen.support.arrays import Indices
@@ -35,8 +36,14 @@ def make_block(order: Order, number: int) -> Made:
         faults = _faults(order, block)
         for suffix in order.suffixes:
             rows |= _exported(order, block, suffix, faults)
-    order.place.write_block(number, block, rows)
+    order.place.write_block(number, block, rows, _graph(block) if order.graph else {})
     return number, drawn_again(family, block), time.monotonic() - start
+
+
+def _graph(block: Block) -> dict[str, Any]:
+    """Return normals and areas of a block's points."""
+    each = [surface(sections) for sections in block.batch.sections]  # one fits in a cache
+    return {name: np.stack(part) for name, part in zip(GRAPH, zip(*each, strict=True), strict=True)}
 
 
 def sections_of(order: Order, index: Indices) -> Block:

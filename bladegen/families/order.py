@@ -36,6 +36,8 @@ class Order:
         Of the stored sections: "float32" or "float64".
     options : Options
         How files are made.
+    graph : bool
+        Store normals and areas of the points, and the graph that they make, beside the sections.
     """
 
     family: Family
@@ -43,6 +45,7 @@ class Order:
     formats: tuple[str, ...] = ()
     dtype: str = "float32"
     options: Options = field(default_factory=Options)
+    graph: bool = False
 
     def __post_init__(self) -> None:
         if self.dtype not in FLOAT_TYPES:
@@ -68,9 +71,11 @@ class Order:
     @property
     def identity(self) -> dict[str, Any]:
         """What the folder will hold."""
-        made = {"dtype": self.dtype, "formats": self.suffixes}
+        made: dict[str, Any] = {"dtype": self.dtype, "formats": self.suffixes}
         if self.suffixes:
             made["options_fingerprint"] = fingerprint(self.options)
+        if self.graph:
+            made["graph"] = True
         return identity(self.family) | made
 
     @property

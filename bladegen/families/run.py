@@ -14,6 +14,7 @@ from bladegen.errors import FamilyError
 from bladegen.families.dataset.writing import write_dataset
 from bladegen.families.folder import FLOAT_TYPES
 from bladegen.families.forecasts import Forecast, free_bytes, require_room
+from bladegen.families.growth import grow, settle
 from bladegen.families.making import make_block, sections_of
 from bladegen.families.order import Order
 from bladegen.families.processes import in_processes, in_threads, on_cluster
@@ -31,6 +32,7 @@ def run(
     jobs: int = 1,
     client: Any = None,
     resume: bool = False,
+    append: bool = False,
     progress: Callable[[int], None] = lambda _: None,
     foretold: Callable[[Forecast], None] = lambda _: None,
 ) -> int:
@@ -46,6 +48,8 @@ def run(
         A cluster that makes the blocks instead.
     resume : bool
         Go on with what an earlier run left.
+    append : bool
+        Go on with a family of fewer variants: those that are there stay as they are.
     progress : callable
         Told how many variants are whole, each time some are.
     foretold : callable
@@ -62,10 +66,13 @@ def run(
     if whole(jobs, "jobs", FamilyError) < 1:
         raise FamilyError(f"jobs: got {jobs}, must be at least 1")
     place, family = order.place, order.family
-    if not resume:
+    if not (resume or append):
         require_room(order.target, len(family), _bytes(order, len(family)), at_least=True)
     with place.alone(), place.undone_if_refused():
-        place.begin(order.identity, resume=resume)
+        if append:
+            grow(order)
+        place.begin(order.identity, resume=resume or append)
+        settle(place, len(family))
         left = order.blocks()
         before = done = len(family) - _variants(order, left)
         require_room(order.target, len(family) - done, _bytes(order, len(family) - done))
@@ -78,7 +85,9 @@ def run(
             len(left),
         )
         if left:
-            place.make_sections(family.eta, family.blade.u, len(family), order.dtype)
+            place.make_sections(
+                family.eta, family.blade.u, len(family), order.dtype, graph=order.graph
+            )
             if order.suffixes:
                 folder(place.blades)
             sections_of(order, np.arange(0))  # compiles, for all workers
@@ -113,7 +122,8 @@ def run(
 def _bytes(order: Order, variants: int) -> int:
     """Return how many bytes the sections of some variants take."""
     one = len(order.family.eta) * len(order.family.blade.u) * 3
-    return variants * one * np.dtype(FLOAT_TYPES[order.dtype]).itemsize
+    each = one * np.dtype(FLOAT_TYPES[order.dtype]).itemsize
+    return variants * (each + (one * 4 * 4 // 3 if order.graph else 0))
 
 
 def _foreseen(order: Order, left: list[int], made: int, seconds: float) -> Forecast:

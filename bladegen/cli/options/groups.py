@@ -53,7 +53,7 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
 
 
 COMMAND: ContextVar[str] = ContextVar("what was typed", default="")
-UNTOLD = ("output", "jobs", "dask", "resume")  # options that change no file
+UNTOLD = ("output", "jobs", "dask", "resume", "append")  # options that change no file
 
 
 def _typed(name: str, parameters: list[inspect.Parameter], given: dict[str, Any]) -> str:

@@ -15,21 +15,17 @@ from typing import Any, SupportsIndex
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.blade.changes.deformation import Window
-from bladegen.blade.lofting.paths import DEFAULT
-from bladegen.blade.planform import PLANES
 from bladegen.errors import FamilyError, PlaceError
+from bladegen.families.dataset.graphs import edges, surface, triangles
+from bladegen.families.dataset.replanning import planned_again
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
 from bladegen.families.dataset.store import column_values, opened
 from bladegen.families.dataset.variables import parameter, variables
 from bladegen.families.family import Family
-from bladegen.formats.bundled import bundled
-from bladegen.formats.reading import read
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import one_of, shown, suggestion, whole
 from bladegen.support.arrays import Array, Indices, readonly
 from bladegen.support.files import content_of
-from bladegen.variants.designs import tabulated
 
 __all__ = ["LoadedFamily", "load_family"]
 
@@ -196,6 +192,26 @@ class LoadedFamily:
 
         return batches(self, tuple(names), size, places, rng)
 
+    def graph(self, place: int) -> dict[str, Any]:
+        """Return a variant as a graph, for learning on geometry, as NumPy arrays.
+
+        ``points`` (n, 3) [m], ``normals`` (n, 3), ``areas`` (n,) [m2], ``edges`` (e, 2) and
+        ``triangles`` (f, 3); points in the order of the sections, root to tip.  A family made with
+        ``--format graph`` holds them; of others they are computed.
+        """
+        sections = np.asarray(self["sections"][place])
+        stored = "normals" in self.store
+        made = [self[name][place] for name in ("normals", "areas")] if stored else surface(sections)
+        normals, areas = (np.asarray(part, dtype=np.float32) for part in made)
+        spans, landmarks = sections.shape[:2]
+        return {
+            "points": sections.reshape(-1, 3),
+            "normals": normals.reshape(-1, 3),
+            "areas": areas.reshape(-1),
+            "edges": edges(spans, landmarks),
+            "triangles": triangles(spans, landmarks),
+        }
+
     def _blade(self, place: int) -> Blade:
         made: Blade = self._planned.variant(place)
         stored = np.asarray(self.store["sections"][place], dtype=np.float64)
@@ -210,44 +226,14 @@ class LoadedFamily:
     @cached_property
     def _planned(self) -> Family:
         """The family, its variants where the manifest says that they lie."""
-        blade = self._baseline
-        space = self.space if self.space is not None else self._known_space
-        columns = dict(zip(self.factors, self.parameters.T, strict=True))
-        return Family(
-            blade,
-            space,
-            tabulated(space, columns),
-            Window(*self.identity["window"]),
+        return planned_again(
+            self.path,
+            {**self.attributes, **self.identity},
+            dict(zip(self.factors, self.parameters.T, strict=True)),
             np.asarray(self.store["eta"][:]),
-            "keep",
-            chord_line=self.identity["chord_line"],
+            self.baseline,
+            self.space,
         )
-
-    @cached_property
-    def _known_space(self) -> ShapeSpace | None:
-        own = self.path / "space.npz"
-        if self.identity["space_fingerprint"] is None:
-            return None
-        return ShapeSpace.load(own) if own.is_file() else ShapeSpace.bundled()
-
-    @cached_property
-    def _baseline(self) -> Blade:
-        if self.baseline is not None:
-            return self.baseline
-        settings = self.attributes.get("baseline_settings", {})
-        name = self.attributes.get("baseline", self.identity["blade"])
-        if name not in bundled() or any(key.startswith("change1.") for key in settings):
-            raise FamilyError(
-                f"{self.path}: its baseline {name!r} is no bundled blade; "
-                "load_family(path, blade=...) takes it"
-            )
-        made = Blade.from_definition(
-            read(name),
-            landmarks=self.identity["landmarks"],
-            path=settings.get("path", DEFAULT),
-            planes=PLANES[settings.get("planes", "flange")],
-        )
-        return made.mirror_image() if settings.get("mirrored") else made
 
     def dataset(self) -> Any:
         """Return the store as an `xarray.Dataset`, where xarray is installed."""

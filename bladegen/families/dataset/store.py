@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import ExportError
+from bladegen.families.dataset.graphs import edges, triangles
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
 from bladegen.families.dataset.variables import COORDINATES, Variable, parameter, variables
 
@@ -26,6 +27,12 @@ FIXED = {  # arrays that are there before the first variant is
     "eta": (("span",), "span fraction, root to tip", "1"),
     "u": (("landmark",), "landmark parameter, suction side to pressure side", "1"),
     "xyz": (("xyz",), "axes of the blade frame: to suction, to the trailing edge, to the tip", ""),
+}
+GRAPH = {
+    "normals": {"long_name": "unit normals of the points, outward", "units": "1"},
+    "areas": {"long_name": "shares of the skin's area of the points", "units": "m2"},
+    "edges": {"long_name": "pairs of neighbours among the points (span * landmarks + landmark)"},
+    "triangles": {"long_name": "corners of the skin's triangles"},
 }
 
 
@@ -97,8 +104,16 @@ def _describe(group: Any) -> None:
     group["sections"].attrs.update(
         {"long_name": "points of the sections, blade frame", "units": "m"}
     )
-    axes = group.require_array("xyz", shape=(3,), dtype="str", dimension_names=("xyz",))
-    axes[:] = np.array(["x", "y", "z"])
+    axes = np.array(["x", "y", "z"], dtype=np.dtypes.StringDType())
+    group.create_array("xyz", data=axes, dimension_names=("xyz",), overwrite=True)
+    if "normals" in group:
+        spans, landmarks = group["sections"].shape[1:3]
+        for name, values, each in (("edges", edges, "end"), ("triangles", triangles, "corner")):
+            made = values(spans, landmarks).astype(np.int32)
+            axes_of = (name[:-1], each)
+            group.create_array(name, data=made, dimension_names=axes_of, overwrite=True)
+        for name, said in GRAPH.items():
+            group[name].attrs.update(said)
     for name, (dims, long_name, units) in FIXED.items():
         if group[name].metadata.dimension_names is None:  # of families before version 2
             values = group[name][:]

@@ -1,8 +1,9 @@
-"""A turbine with its own, the same and a perturbed blade in WISDEM: power, thrust, mass.
+"""A turbine with its own, the same and a perturbed blade in WISDEM: power, thrust, mass, modes.
 
-Run: python benchmarks/wisdem_run.py [TURBINE.yaml].  The turbine is a full windIO 2 file, by
-default the IEA 15 MW of the windIO package.  WISDEM is no dependency of bladegen: install it, or
-name the Python that has it in WISDEM_PYTHON.  Every blade goes through the commands that a user
+Run: python benchmarks/wisdem_run.py [TURBINE.yaml | BLADE].  The turbine is a full windIO 2 file,
+by default the IEA 15 MW of the windIO package; of a bundled BLADE (iea15mw, nrel5mw) the variants
+run as they are written, without a turbine file.  WISDEM is no dependency of bladegen: install it,
+or name the Python that has it in WISDEM_PYTHON.  Every blade goes through the commands that a user
 types.
 """
 
@@ -28,6 +29,8 @@ print("RESULT" + json.dumps({
     "thrust": most("rotorse.rp.powercurve.T", "MN"),
     "mass": most("rotorse.blade_mass", "t"),
     "tip moves": most("rotorse.rs.tip_pos.tip_deflection", "m"),
+    "flap": float(problem.get_val("rotorse.rs.frame.flap_mode_freqs", units="Hz")[0]),
+    "edge": float(problem.get_val("rotorse.rs.frame.edge_mode_freqs", units="Hz")[0]),
 }))
 """
 MODELING = """
@@ -47,7 +50,18 @@ WISDEM:
 Environment: {air_density: 1.225, air_dyn_viscosity: 1.81e-5, shear_exp: 0.2}
 """
 ANALYSIS = "general: {folder_output: outputs, fname_output: out}\n"
-HEAD = ("blade", "Cp", "AEP, GWh", "power, MW", "rated at, m/s", "thrust, MN", "mass, t", "tip, m")
+HEAD = (
+    *("blade", "Cp", "AEP, GWh", "power, MW", "rated at, m/s", "thrust, MN", "mass, t", "tip, m"),
+    *("flap, Hz", "edge, Hz"),
+)
+BUNDLED = ("iea15mw", "nrel5mw")
+VARIANTS = (
+    ("as it is", ()),
+    ("other airfoils", ("--pga", PGA)),
+    ("2 % thicker", ("--thickness", "1.02")),
+    ("sections 3 % larger", ("--chord-scale", "1.03")),
+    ("twist 1 degree more", ("--twist", "1")),
+)
 
 
 def bladegen(*arguments: object) -> None:
@@ -88,6 +102,28 @@ def default_turbine(python: str) -> Path:
     return Path(found.stdout.strip()) / "IEA-15-240-RWT.yaml"
 
 
+def shown(title: str, row: list[float]) -> None:
+    """Print a line of the table."""
+    print(f"| {title} | " + " | ".join(f"{value:.5g}" for value in row) + " |", flush=True)
+
+
+def alone(python: str, blade: str) -> None:
+    """Print what WISDEM makes of variants of a bundled blade, each from its own file alone."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for i, (title, change) in enumerate(VARIANTS):
+            made, case = f"variant{i}", folder / str(i)
+            if change:
+                bladegen(
+                    "perturb", blade, "-o", case, *change, "--format", "yaml", "--name", made,
+                    "--polars", "estimate-all",
+                )  # fmt: skip
+            else:
+                case.mkdir()
+                bladegen("convert", blade, case / f"{made}.yaml", "--polars", "estimate-all")
+            shown(f"{blade}: {title}", run(python, case / f"{made}.yaml"))
+
+
 def main() -> None:
     """Print a table of what WISDEM makes of each file."""
     python = os.environ.get("WISDEM_PYTHON", sys.executable)
@@ -97,9 +133,12 @@ def main() -> None:
             "wisdem is missing: pip install wisdem into an environment, and name its Python "
             "in WISDEM_PYTHON"
         )
-    turbine = Path(sys.argv[1]) if len(sys.argv) > 1 else default_turbine(python)
     print("| " + " | ".join(HEAD) + " |")
     print("| --- " * len(HEAD) + "|")
+    if sys.argv[1:] and sys.argv[1] in BUNDLED:
+        alone(python, sys.argv[1])
+        return
+    turbine = Path(sys.argv[1]) if len(sys.argv) > 1 else default_turbine(python)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for title, change, polars in (
@@ -122,8 +161,7 @@ def main() -> None:
                 made.write_bytes(turbine.read_bytes())
             else:
                 bladegen("convert", source, made, "--into", turbine, "--polars", then)
-            row = run(python, made)
-            print(f"| {title} | " + " | ".join(f"{value:.5g}" for value in row) + " |", flush=True)
+            shown(title, run(python, made))
 
 
 if __name__ == "__main__":

@@ -8,6 +8,10 @@ cat <<'HEAD'
 All packages of `locks/run.txt`, from their own metadata (`make licences`). bladegen itself is
 Apache-2.0; OCCT, inside cadquery-ocp, is LGPL-2.1 with an exception and linked dynamically.
 
+Figures of the bundled blades are others' (the head of each file in `blades/` names source, version and licence):
+IEA 15 MW, its structure included, Apache-2.0; NREL 5 MW BSD-3-Clause, its structure (WISDEM) Apache-2.0; DTU 10 MW
+Apache-2.0 and LGPL-3.0.
+
 HEAD
 # shellcheck disable=SC2046  # the names are words
 .venv/bin/pip-licenses --from=mixed --format=markdown --order=name \

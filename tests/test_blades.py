@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +15,12 @@ import yaml
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.interpolate import PchipInterpolator
 
+from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import BladeDefinition, Distribution, ReferenceAxis
-from bladegen.formats.bundled import Facts, bundled, facts
+from bladegen.formats.bundled import Facts, bundled, facts, layups
 from bladegen.formats.reading import read
 from bladegen.support.arrays import Array
+from bladegen.views.tables import layup_figures
 
 ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = Path(__file__).parent / "golden"
@@ -215,6 +218,79 @@ def test_the_files_follow_the_schema_of_windio(name):
     ]
     # the sources give no drag coefficient of the hub, and nothing here is made up
     assert errors == [("components.hub", "'cd' is a required property")]
+
+
+STRUCTURED = ("iea15mw", "nrel5mw")
+
+
+def without_stated(structure):
+    """A structure without the fractions that stand beside its rules."""
+    bare = {"stated": (None, None)}
+    return [replace(part, **bare) for part in (*structure.webs, *structure.layers)]
+
+
+def test_the_structure_of_the_iea_15_mw_is_the_published_one():
+    home = Path(pytest.importorskip("windIO.examples.turbine").__file__).parent
+    own = read("iea15mw").structure
+    published = read(home / "IEA-15-240-RWT.yaml").structure
+    assert own.webs
+    assert without_stated(own) == without_stated(published)
+    for mine, theirs in zip(own.layers, published.layers, strict=True):
+        for one, other in zip(mine.stated, theirs.stated, strict=True):
+            assert (one is None) == (other is None)
+            if one is not None:
+                assert_allclose(one.values, other.values, atol=5.1e-5)  # to four digits
+    theirs = {material.name: material for material in published.materials}
+    for material in own.materials:  # free text is not copied
+        mine, other = (replace(one, others=()) for one in (material, theirs[material.name]))
+        assert mine == other
+
+
+def test_the_layers_of_the_nrel_5_mw_are_the_published_ones():
+    published = rows("nrel5mw/layers")
+    layers = read("nrel5mw").structure.layers
+    assert [layer.name for layer in layers] == list(dict.fromkeys(r["layer"] for r in published))
+    for layer in layers:
+        own = [row for row in published if row["layer"] == layer.name]
+        grid, values = (np.array([float(r[key]) for r in own]) for key in (SPAN, "thickness_m"))
+        assert {row["material"] for row in own} == {layer.material}
+        assert_allclose(layer.thickness(grid), values, rtol=1e-14, atol=1e-12)
+
+
+def test_the_layers_of_the_iea_15_mw_weigh_along_the_span_what_is_published():
+    """Its table was made before its layers were changed last: 8 % apart at half of the span."""
+    blade = Blade.from_definition(read("iea15mw"), landmarks=201)
+    eta = column("iea15mw/mass_per_length", SPAN)
+    published = column("iea15mw/mass_per_length", "mass_kg_m")
+    laid = blade.layup.at(eta).mass_per_length
+    assert_allclose(laid, published, rtol=0.12)
+    assert_allclose(np.trapezoid(laid, eta), np.trapezoid(published, eta), rtol=0.03)
+
+
+@pytest.mark.parametrize("name", STRUCTURED)
+def test_what_a_list_shows_of_layers_is_what_they_weigh(name):
+    layup = Blade.from_definition(read(name)).layup
+    shown = dict(layups()[name])
+    assert shown.pop("findings") == [*map(str, layup.findings)]
+    made = layup_figures(layup)
+    assert made.keys() == shown.keys()
+    for key, value in made.items():
+        if isinstance(value, float):
+            assert_allclose(shown[key], value, rtol=1e-4)
+        elif key == "webs":
+            assert shown[key] == value
+        else:
+            for mine, other in zip(shown[key], value, strict=True):
+                assert mine == other | {
+                    number: pytest.approx(other[number], rel=1e-4)
+                    for number in other
+                    if isinstance(other[number], float)
+                }
+
+
+def test_only_blades_with_a_structure_have_layups():
+    assert {name for name in NAMES if read(name).structure is not None} == set(layups())
+    assert set(layups()) == set(STRUCTURED)
 
 
 @pytest.mark.parametrize("name", NAMES)

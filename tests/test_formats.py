@@ -80,7 +80,8 @@ def test_a_bundled_blade_comes_back(tmp_path, name, format_):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_csv_file_holds_a_definition_whole(tmp_path, name):
     first = bg.read(name)
-    assert bg.write(first, tmp_path / "blade.csv") == ()
+    left_out = [] if first.structure is None else ["structure"]
+    assert [said.where for said in bg.write(first, tmp_path / "blade.csv")] == left_out
     second = bg.read(tmp_path / "blade.csv")
     for field in ("chord", "relative_thickness", "section_offset_y"):
         mine, own = getattr(second, field), getattr(first, field)

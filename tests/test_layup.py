@@ -30,7 +30,7 @@ def plain():
 
 @pytest.fixture(scope="module")
 def bare(plain):
-    return bg.Blade.from_definition(plain, landmarks=201)
+    return bg.Blade.from_definition(replace(plain, structure=None), landmarks=201)
 
 
 def inside(bare, *layers, webs=()):

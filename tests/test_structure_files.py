@@ -11,7 +11,7 @@ from test_structure import WAYS, read
 import bladegen as bg
 from bladegen.definition.structure.positions import Arc, PlaneCut, Shifted
 from bladegen.formats.common.document import Node, Notes
-from bladegen.formats.windio import version1
+from bladegen.formats.windio import turbine_facts, version1
 from bladegen.formats.windio.structure import reading1, reading2, writing1, writing2
 
 VERSIONS = {
@@ -180,3 +180,35 @@ def _plain(value):
     if isinstance(value, list | tuple):
         return [_plain(part) for part in value]
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+def test_facts_of_the_turbine_go_along_in_windio_2_and_in_part_in_windio_1(plain, tmp_path):
+    assert dict(plain.rotor.facts)["assembly.rated_power"] == 15e6
+    bg.write(plain, tmp_path / "two.yaml")
+    assert bg.read(tmp_path / "two.yaml").rotor.facts == plain.rotor.facts
+    said = bg.write(plain, tmp_path / "one.yaml", format="windio1")
+    assert any(finding.where == "turbine" for finding in said)
+    kept = bg.read(tmp_path / "one.yaml").rotor.facts
+    assert kept == tuple(fact for fact in plain.rotor.facts if fact[0].startswith("assembly"))
+
+
+@pytest.mark.parametrize("junk", [None, "x" * 101, [1.0], {"a": 1}, True])
+def test_a_fact_that_is_no_number_or_short_text_is_passed_over(junk):
+    root = {"assembly": {"rated_power": junk, "lifetime": 25.0}, "control": junk}
+    assert turbine_facts.read(Node(root, "", Notes())) == (("assembly.lifetime", 25.0),)
+
+
+def test_an_airfoil_of_unknown_thickness_is_measured_for_windio_2(tmp_path):
+    """WISDEM stops at an airfoil without one; Cylinder2 of the NREL 5 MW has none."""
+    first = bg.read("nrel5mw")
+    said = bg.write(first, tmp_path / "two.yaml")
+    assert any("Cylinder2: rthick" in finding.where for finding in said)
+    stated = [s.airfoil.relative_thickness for s in bg.read(tmp_path / "two.yaml").stations]
+    assert None not in stated
+
+
+def test_what_bonds_layers_is_kept_of_the_materials(plain):
+    structure = plain.structure
+    assert {"resin", "adhesive"} <= structure.densities.keys()
+    layup = bg.Blade.from_definition(plain, landmarks=201).layup
+    assert set(layup.material_masses) == {layer.material for layer in structure.layers}

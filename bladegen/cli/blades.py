@@ -9,7 +9,7 @@ import typer
 from bladegen.cli.options.common import Airfoils, Json
 from bladegen.cli.terminal import print_figures, print_findings, print_table
 from bladegen.errors import BladegenError
-from bladegen.formats.bundled import Facts, bundled, facts
+from bladegen.formats.bundled import Facts, bundled, facts, layups
 
 if TYPE_CHECKING:
     from bladegen.definition.blade_definition import BladeDefinition
@@ -62,7 +62,9 @@ def info(
     figures = definition_figures(definition)
     figures |= {} if made is None else {"made_from": made.text}
     if definition.structure is not None:
-        figures |= _inside(definition, figures["findings"])
+        inside = layups()[blade] if blade in bundled() else _inside(definition)
+        figures["findings"] += inside.pop("findings")
+        figures |= inside
     if as_json:
         typer.echo(json.dumps(figures, indent=2))
         return
@@ -83,20 +85,17 @@ def info(
     print_findings(figures["findings"])
 
 
-def _inside(definition: "BladeDefinition", findings: list[str]) -> dict[str, Any]:
-    """Return what lies inside the skin, and add to `findings` what does not fit there."""
+def _inside(definition: "BladeDefinition") -> dict[str, Any]:
+    """Return what lies inside the skin, with findings on what does not fit there."""
     from bladegen.blade.blade import Blade
     from bladegen.views.tables import layup_figures
 
     try:
         layup = Blade.from_definition(definition).layup
     except BladegenError as error:
-        findings.append(
-            f"structure: its mass is not known, since the sections cannot be made: {error}"
-        )
-        return {}
-    findings += map(str, layup.findings)
-    return layup_figures(layup)
+        said = f"structure: its mass is not known, since the sections cannot be made: {error}"
+        return {"findings": [said]}
+    return layup_figures(layup) | {"findings": [*map(str, layup.findings)]}
 
 
 def _made_by(path: Path) -> Any:

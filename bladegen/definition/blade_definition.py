@@ -141,7 +141,10 @@ class Station:
 
 @dataclass(frozen=True, repr=False)
 class Rotor:
-    """What a file says of the rotor around the blade; nothing here shapes the blade."""
+    """What a file says of the rotor around the blade; nothing here shapes the blade.
+
+    `facts` are kept for other tools, by their path in windIO 2 and in its units.
+    """
 
     blades: int = 3
     hub_radius: float | None = None
@@ -149,10 +152,11 @@ class Rotor:
     cone: float | None = None
     tilt: float | None = None
     hub_drag: float | None = None
+    facts: tuple[tuple[str, str | float], ...] = ()
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if value is not None:
+            if value is not None and name != "facts":
                 amount(value, f"rotor: {name}", DefinitionError)
 
     __repr__ = brief

@@ -237,7 +237,7 @@ def _feed(digest: Any, value: Any) -> None:
         digest.update(type(value).__name__.encode())
         for entry in fields(value):
             part = getattr(value, entry.name)
-            if entry.name not in UNCOUNTED and not (part is None and entry.name in LATER):
+            if entry.name not in UNCOUNTED and not (entry.name in LATER and part in (None, ())):
                 digest.update(entry.name.encode())
                 _feed(digest, part)
     elif isinstance(value, np.ndarray):
@@ -257,5 +257,5 @@ def _feed(digest: Any, value: Any) -> None:
         digest.update(repr(value).encode())
 
 
-LATER = ("structure",)  # of definitions: without it they count as before there was one
+LATER = ("structure", "facts")  # without them a definition counts as before there were any
 UNCOUNTED = ("source", "format", "findings", "description", "about", "command")

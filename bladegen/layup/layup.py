@@ -138,8 +138,9 @@ class Layup:
 
     @property
     def material_masses(self) -> dict[str, float]:
-        """Mass [kg] of each material by its name."""
-        found = dict.fromkeys(self.structure.densities, 0.0)
+        """Mass [kg] of each material that is in a layer, by its name."""
+        used = {layer.material for layer in self.structure.layers}
+        found = {name: 0.0 for name in self.structure.densities if name in used}
         for layer, mass in zip(self.structure.layers, self._weighed[0].tolist(), strict=True):
             found[layer.material] += mass
         return found

@@ -119,7 +119,7 @@ class Structure:
     Parameters
     ----------
     materials : tuple of Material
-        At least those of the layers.
+        At least those of the layers; of resin and adhesive tools ask what they weigh and cost.
     webs : tuple of Web
     layers : tuple of Layer
         From the outside to the inside, in the order of the file.

@@ -72,6 +72,8 @@ class Layout:
         The angles allowed, a quarter turn, in that unit.
     structure : callable
         From the document to what lies inside the skin; notes what it leaves out.
+    facts : callable
+        From the document to what is kept of the turbine for other tools.
     """
 
     version: str
@@ -84,6 +86,7 @@ class Layout:
     angle: float
     turn: Range
     structure: Callable[[Node], Structure | None]
+    facts: Callable[[Node], tuple[tuple[str, str | float], ...]]
 
 
 def recognises(document: object, layout: Layout) -> bool:
@@ -241,4 +244,5 @@ def _rotor(root: Node, layout: Layout) -> Rotor:
         cone=None if cone is None else layout.angle * cone,
         tilt=None if tilt is None else layout.angle * tilt,
         hub_drag=number(DRAG, *hub("cd", "drag_coefficient")),
+        facts=layout.facts(root),
     )

@@ -10,7 +10,7 @@ from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distr
 from bladegen.formats.airfoils.unique_names import uniquely_named
 from bladegen.formats.common.document import Node, Range
 from bladegen.formats.common.redefinition import missed, sampled
-from bladegen.formats.windio import reading, writing
+from bladegen.formats.windio import reading, turbine_facts, writing
 from bladegen.formats.windio.reading import Entry, Layout
 from bladegen.formats.windio.structure import reading1, writing1
 from bladegen.formats.windio.writing import Document, Note
@@ -50,6 +50,7 @@ LAYOUT = Layout(
     angle=1.0,
     turn=Range(-math.pi / 2, math.pi / 2, "rad"),
     structure=reading1.read,
+    facts=partial(turbine_facts.read, places=("assembly",)),
 )
 recognises = partial(reading.recognises, layout=LAYOUT)
 read = partial(reading.read, layout=LAYOUT)
@@ -60,6 +61,9 @@ def document(definition: BladeDefinition, note: Note) -> Document:
     definition = writing.within(definition, note)
     stations = uniquely_named(definition.stations)
     rotor = definition.rotor
+    shared = tuple(fact for fact in rotor.facts if fact[0].startswith("assembly."))
+    if shared != rotor.facts:
+        note("turbine", "its control and drivetrain stand elsewhere in windIO 1; left out")
     named = replace(definition, stations=stations)
     components: Document = {"blade": {"outer_shape_bem": outer_shape(named, note)}}
     hub: Document = {}
@@ -75,6 +79,7 @@ def document(definition: BladeDefinition, note: Note) -> Document:
         components["nacelle"] = {"drivetrain": {"uptilt": rotor.tilt}}
     entries = writing.airfoil_entries(stations, "relative_thickness", polars)
     made = writing.turbine(definition, "1.0", components, entries)
+    turbine_facts.add(made, shared)
     inside = writing1.document(definition, note)
     if inside is not None:
         components["blade"]["internal_structure_2d_fem"], made["materials"] = inside

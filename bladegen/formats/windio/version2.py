@@ -15,10 +15,11 @@ from bladegen.definition.blade_definition import (
     united,
 )
 from bladegen.definition.thickness import ruled
+from bladegen.formats.airfoils.contours import thickness
 from bladegen.formats.airfoils.unique_names import uniquely_named
 from bladegen.formats.common.document import FRACTION, Node, Range
 from bladegen.formats.common.redefinition import missed, sampled
-from bladegen.formats.windio import reading, writing
+from bladegen.formats.windio import reading, turbine_facts, writing
 from bladegen.formats.windio.reading import Entry, Layout
 from bladegen.formats.windio.structure import reading2, writing2
 from bladegen.formats.windio.writing import Document, Note
@@ -26,6 +27,7 @@ from bladegen.formats.windio.writing import Document, Note
 __all__ = ["LAYOUT", "blade", "document", "polars", "read", "recognises", "write"]
 
 DEGREES = 180.0 / np.pi
+MEASURED = 6  # digits of a thickness that coordinates give
 DIGITS = 12  # of angles in degrees, so that those of a file in degrees come back
 NOT_HELD = frozenset({"b5"})  # of AeroDyn's constants for unsteady aerodynamics
 
@@ -53,6 +55,7 @@ LAYOUT = Layout(
     angle=math.pi / 180.0,
     turn=Range(-90.0, 90.0, "deg"),
     structure=reading2.read,
+    facts=turbine_facts.read,
 )
 recognises = partial(reading.recognises, layout=LAYOUT)
 read = partial(reading.read, layout=LAYOUT)
@@ -75,6 +78,24 @@ def document(definition: BladeDefinition, note: Note) -> Document:
     if inside is not None:
         components["blade"]["structure"], made["materials"] = inside
     return made
+
+
+def whole(definition: BladeDefinition, note: Note) -> Document:
+    """Return a document that tools can run: facts of the turbine, airfoils' thickness in it."""
+    made = document(definition, note)
+    _measured(made["airfoils"], note)
+    turbine_facts.add(made, definition.rotor.facts)
+    return made
+
+
+def _measured(entries: list[Document], note: Note) -> None:
+    """Measure the airfoils whose thickness nobody states: WISDEM runs none without one."""
+    for entry in entries:
+        if "rthick" not in entry:
+            xy = np.array([entry["coordinates"][axis] for axis in "xy"]).T
+            entry["rthick"] = min(round(thickness(xy), MEASURED), 1.0)
+            where = f"airfoil {entry['name']}: rthick"
+            note(where, f"is not stated; {entry['rthick']:g} is written, as its coordinates give")
 
 
 def _hub(rotor: Rotor, note: Note) -> Document:
@@ -149,4 +170,4 @@ def _offset(definition: BladeDefinition, note: Note) -> Distribution:
     return made
 
 
-write = partial(writing.write, version="2", document=document)
+write = partial(writing.write, version="2", document=whole)

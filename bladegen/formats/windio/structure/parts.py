@@ -52,6 +52,7 @@ HELD = {
     "S": "shear",
 }
 
+BONDS = ("resin", "adhesive")  # in no layer, and WISDEM runs no blade without them
 OWN = frozenset({"name", "rho", "orth", "ply_t", *HELD})
 
 T = TypeVar("T")
@@ -198,8 +199,8 @@ def _once(inside: Node, kind: str, read: Callable[[Node], T | None]) -> dict[str
 
 
 def _materials(root: Node, wanted: Iterable[str]) -> dict[str, Material]:
-    """Return the materials that layers name, in the order of the file."""
-    names = set(wanted)
+    """Return the materials that layers name, and those that bond them, in the order of the file."""
+    names = {*wanted, *BONDS}
     listed = root.value.get("materials") if isinstance(root.value, dict) else None
     found: dict[str, Material] = {}
     for i, value in enumerate(listed if isinstance(listed, list) else ()):

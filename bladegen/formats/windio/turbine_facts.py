@@ -1,0 +1,73 @@
+"""What windIO files say of the turbine besides the blade: kept as it is, and written back.
+
+Nothing here is used by bladegen; tools that run the turbine (WISDEM) ask for it.  A fact is a
+number or a short text under the path at which it stands in windIO 2, in the file's own unit;
+windIO 1 has the same members of the assembly.
+"""
+
+from collections.abc import Iterable
+
+from bladegen.formats.common.document import Node
+from bladegen.formats.windio.writing import Document
+
+__all__ = ["Facts", "add", "read"]
+
+Facts = tuple[tuple[str, str | float], ...]
+LONGEST = 100  # characters of a text
+KEPT = {
+    "assembly": (
+        "turbine_class",
+        "turbulence_class",
+        "drivetrain",
+        "rotor_orientation",
+        "hub_height",
+        "rated_power",
+        "lifetime",
+        "cut_in_wind_speed",
+        "cut_out_wind_speed",
+    ),
+    "components.drivetrain.outer_shape": ("distance_tt_hub", "overhang"),
+    "components.drivetrain.gearbox": ("gear_ratio", "efficiency"),
+    "control": (
+        "min_rotor_speed",
+        "rated_rotor_speed",
+        "max_rotor_speed",
+        "rated_power",
+        "optimal_tsr",
+        "fine_pitch",
+        "min_pitch_limit",
+        "max_pitch_limit",
+        "max_pitch_rate",
+        "max_torque_rate",
+    ),
+}
+
+
+def read(root: Node, places: Iterable[str] = tuple(KEPT)) -> Facts:
+    """Return the facts at some places of a document, if they are numbers or short texts."""
+    found: list[tuple[str, str | float]] = []
+    for path in places:
+        held = root.value
+        for key in path.split("."):
+            held = held.get(key) if isinstance(held, dict) else None
+        for name in KEPT[path]:
+            value = held.get(name) if isinstance(held, dict) else None
+            if isinstance(value, str | int | float) and _plain(value):
+                found.append((f"{path}.{name}", value))
+    return tuple(found)
+
+
+def _plain(value: str | float) -> bool:
+    if isinstance(value, str):
+        return len(value) <= LONGEST
+    return not isinstance(value, bool)
+
+
+def add(document: Document, facts: Facts) -> None:
+    """Write facts into a document, beside what stands there."""
+    for path, value in facts:
+        *holders, name = path.split(".")
+        held = document
+        for key in holders:
+            held = held.setdefault(key, {})
+        held.setdefault(name, value)

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from bladegen.exports.exporters import export
     from bladegen.families.dataset.loading import load_family
     from bladegen.families.family import Family, family
+    from bladegen.fitting.fit import fit
+    from bladegen.fitting.fitted import Fitted
     from bladegen.formats.airfoils.writing import write_airfoil
     from bladegen.formats.bundled import bundled
     from bladegen.formats.reading import read
@@ -52,6 +54,7 @@ _HOME = {
     "Distribution": "definition.distribution",
     "Family": "families.family",
     "Finding": "errors",
+    "Fitted": "fitting.fitted",
     "Layer": "definition.structure.structure",
     "Material": "definition.structure.structure",
     "ParametricBlade": "parametric.model",
@@ -66,6 +69,7 @@ _HOME = {
     "bundled": "formats.bundled",
     "export": "exports.exporters",
     "family": "families.family",
+    "fit": "fitting.fit",
     "load_family": "families.dataset.loading",
     "read": "formats.reading",
     "write": "exports.definitions",
@@ -81,6 +85,7 @@ __all__ = [
     "Distribution",
     "Family",
     "Finding",
+    "Fitted",
     "Layer",
     "Material",
     "ParametricBlade",
@@ -96,6 +101,7 @@ __all__ = [
     "bundled",
     "export",
     "family",
+    "fit",
     "load_family",
     "read",
     "write",

@@ -6,7 +6,7 @@ import pytest
 
 import bladegen as bg
 from bladegen.blade.edges import MinimumThickness
-from bladegen.cli.provenance import alike
+from bladegen.cli.options.provenance import alike
 from bladegen.surface.tips import flat_tip, round_tip
 
 

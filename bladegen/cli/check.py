@@ -117,7 +117,7 @@ def _stripes(thing: Any, target: Path) -> None:
 
 def _compare(file: str, other: str, screenshot: Path | None, making: Making, as_json: bool) -> None:
     """Measure two surfaces against each other and print, or draw, what was found."""
-    from bladegen.cli.provenance import alike
+    from bladegen.cli.options.provenance import alike
     from bladegen.exports.marks import marked
     from bladegen.exports.provenance import compared_of
     from bladegen.views.comparison import compared, draw, surface_of

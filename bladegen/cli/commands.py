@@ -30,6 +30,7 @@ SUMMARIES = {
     "perturb": "Perturb a blade consistently and build it.",
     "family": "Make a family of perturbed blades: sections, a manifest, files and a contact sheet.",
     "check": "Measure a solid, a mesh or a blade definition, or the distance between two of them.",
+    "fit": "Fit a definition to a surface: axis, chord, twist, offsets, airfoils at few stations.",
     "convert": "Convert a blade between file formats, and say what the new one cannot hold.",
     "formats": "List the formats that are read and written, those of plug-ins too.",
     "preview": "Look at a blade: in a window, or as a picture, a page, a GIF or a film.",
@@ -60,7 +61,7 @@ class Commands(typer.core.TyperGroup):
             formatter.write_dl(list(SUMMARIES.items()))
 
 
-def function_of(name: str) -> Any:
+def function_of(name: str) -> Any:  # noqa: PLR0912
     """Return the function that a command runs, or the Typer of a group of commands."""
     run: Callable[..., None]
     match name:
@@ -76,6 +77,8 @@ def function_of(name: str) -> Any:
             from bladegen.cli.family import family as run
         case "check":
             from bladegen.cli.check import check as run
+        case "fit":
+            from bladegen.cli.fit import fit as run
         case "convert":
             from bladegen.cli.convert import convert as run
         case "formats":

@@ -1,0 +1,157 @@
+"""The command `bladegen fit`: a surface of unknown origin to a blade's definition."""
+
+import json
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bladegen.cli.options.common import Json, ending_in
+from bladegen.cli.options.groups import COMMAND, grouped
+from bladegen.cli.options.parsing import metres
+from bladegen.cli.terminal import print_figures, print_findings, print_table, progress_bar
+
+__all__ = ["fit"]
+
+
+class Units(StrEnum):
+    """Units of files that say none."""
+
+    m = "m"
+    mm = "mm"
+    cm = "cm"
+    inch = "in"
+    foot = "ft"
+
+
+class Frame(StrEnum):
+    """Whose axes the blade's are."""
+
+    auto = "auto"
+    file = "file"
+    blade = "blade"
+
+
+@grouped
+def fit(
+    source: Annotated[
+        Path,
+        typer.Argument(metavar="SOURCE", help="A CAD file (STEP, IGES, BREP) or a mesh file."),
+    ],
+    target: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            help="The definition to write, such as blade.yaml (windIO 2).",
+            callback=ending_in(".yaml", ".yml", ".dat", ".htc", ".csv", ".xlsx"),
+        ),
+    ],
+    tolerance: Annotated[
+        str, typer.Option(help="Distance that 99 % of the points shall keep.")
+    ] = "1mm",
+    unit: Annotated[
+        Units | None,
+        typer.Option(help="Unit of the file; by default what it says, or its size suggests."),
+    ] = None,
+    frame: Annotated[
+        Frame,
+        typer.Option(
+            help="Axes of the blade: those of the file, those that follow from its shape alone "
+            "(twist is then zero at 90 % span), or the file's where these fit."
+        ),
+    ] = Frame.auto,
+    name: Annotated[str | None, typer.Option(help="The blade's name; the file's if not given.")] = (
+        None
+    ),
+    screenshot: Annotated[
+        Path | None,
+        typer.Option(
+            help="A PNG of the surface coloured by its distance from the blade.",
+            callback=ending_in(".png"),
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Fit a definition to a surface: axis, chord, twist, offsets, airfoils at few stations.
+
+    A report lies beside it. Exit with 1 if the tolerance is missed; the files are there then, too.
+    """
+    from bladegen.exports.definitions import write
+    from bladegen.fitting.fit import fit as fitted_to
+    from bladegen.formats.writing import format_of
+    from bladegen.support.files import replacing
+
+    row = format_of(target, None)
+    allowed = metres(tolerance, "tolerance", example="1mm")
+    with progress_bar() as progress:
+        fitted = fitted_to(
+            source,
+            tolerance=allowed,
+            unit=unit and unit.value,
+            frame=frame.value,
+            name=name,
+            progress=progress,
+        )
+        progress(f"writing {target}")
+        findings = write(fitted.definition, target, command=COMMAND.get(), polars="none")
+        report = fitted.report() | {"format": row.title}
+        told = target.with_suffix(".fit.json")
+        with replacing(told) as temporary:
+            temporary.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+        if screenshot is not None:
+            progress("rendering")
+            _draw(fitted, screenshot)
+    if as_json:
+        typer.echo(json.dumps(report, indent=2))
+    else:
+        print_findings([str(finding) for finding in (*fitted.findings, *findings)])
+        print_figures(f"{source} fitted", fitted.figures)
+        _print_bands(fitted)
+        for path in (target, told, *([screenshot] if screenshot else [])):
+            typer.echo(f"wrote {path}")
+    fitted.require_held()
+
+
+def _print_bands(fitted: Any) -> None:
+    rows = [
+        [
+            f"{100 * band['from_eta']:.0f} to {100 * band['to_eta']:.0f}",
+            *(
+                f"{band[key]:.3f}"
+                for key in ("maximum_mm", "percentile_99_mm", "rms_mm", "mean_mm")
+            ),
+        ]
+        for band in fitted.bands()
+    ]
+    print_table(["span, %", "largest, mm", "99 %, mm", "RMS, mm", "mean (outside +), mm"], rows)
+    rows = [
+        [
+            f"{place.eta:.4f}",
+            f"{100 * airfoil.relative_thickness:.2f}",
+            ", ".join(f"{t:.3f}" for t in place.coordinates),
+            f"{place.distance:.3f}",
+            f"{place.spread:.1f}",
+            f"{place.nearest}, {place.away:.3f}",
+        ]
+        for place, airfoil in zip(
+            fitted.places(), (s.airfoil for s in fitted.definition.stations), strict=True
+        )
+    ]
+    print_table(
+        ["eta", "thickness, %", "t, rad", "off the space, rad", "spread", "nearest, rad"],
+        rows,
+        title="airfoils",
+    )
+
+
+def _draw(fitted: Any, target: Path) -> None:
+    from bladegen.exports.marks import marked
+    from bladegen.exports.provenance import drawn_of
+    from bladegen.measures.sides import Side, surface_of
+    from bladegen.views.comparison import compared, draw
+
+    found = compared(Side("the source", fitted.surface), surface_of(fitted.blade))
+    with marked(target, drawn_of(fitted.blade, command=COMMAND.get())) as temporary:
+        draw(found, f"{fitted.definition.name}: source against fit", temporary)

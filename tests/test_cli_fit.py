@@ -1,0 +1,64 @@
+"""`bladegen fit` as users call it."""
+
+import json
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from typer.testing import CliRunner
+
+import bladegen as bg
+from bladegen.cli import commands
+from bladegen.surface import mesh_files
+from bladegen.surface.mesh import TriangleMesh
+
+RUN = CliRunner()
+
+
+def run(*arguments):
+    return RUN.invoke(commands.app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture(scope="module")
+def stl(tmp_path_factory):
+    """A blade in millimetres, as files of unknown origin are."""
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=61)
+    path = tmp_path_factory.mktemp("fit") / "unknown.stl"
+    return bg.export(blade, path, stations=40, unit="mm")
+
+
+def test_one_command_makes_a_definition_a_report_and_says_how_good_it_is(
+    stl, tmp_path, foreign_here
+):
+    target = tmp_path / "blade.yaml"
+    result = run("fit", stl, "-o", target, "--tolerance", "30mm", "--name", "found")
+    assert result.exit_code == 0, result.output
+    assert "taken to be in mm" in result.output
+    assert "nearest" in result.output
+    definition, known = bg.read(target), bg.read("nrel5mw")
+    eta = np.linspace(0.2, 0.95, 20)
+    assert_allclose(definition.chord(eta), known.chord(eta), atol=0.01)
+    report = json.loads((tmp_path / "blade.fit.json").read_text())
+    assert report["held"] is True
+    assert report["blade"] == "found"
+    assert report["scale"] == 1e-3
+    assert report["percentile_99_mm"] < 30.0
+    assert len(report["airfoils"]) == report["stations"]
+    assert "command=bladegen fit unknown.stl" in target.read_text()
+
+
+def test_a_missed_tolerance_is_said_and_the_files_are_there(stl, tmp_path, monkeypatch):
+    from dataclasses import replace
+
+    from bladegen.fitting import fit as module
+
+    mesh = mesh_files.read(stl)
+    triangles = TriangleMesh(np.asarray(mesh.vertices) / 1e3, np.asarray(mesh.faces))
+    made = replace(bg.fit(triangles, tolerance=0.05, samples=50), tolerance=1e-4)
+    monkeypatch.setattr(module, "fit", lambda *_, **__: made)
+    target = tmp_path / "blade.yaml"
+    result = run("fit", stl, "-o", target, "--json")
+    assert result.exit_code == 1
+    assert "allowed is 0.1 mm; it is worst at" in str(result.exception)
+    assert json.loads(result.output)["held"] is False
+    assert bg.read(target).length == pytest.approx(61.5, abs=0.01)

@@ -1,0 +1,232 @@
+"""From surfaces to blades: laws of the fit, and blades that come back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+import bladegen as bg
+from bladegen.airfoils.section_splines import SectionSplines
+from bladegen.errors import BladegenError, GeometryError
+from bladegen.fitting import measuring
+from bladegen.fitting.placing.finding import found
+from bladegen.fitting.placing.pose import Pose
+from bladegen.fitting.sections import outlines
+from bladegen.fitting.sections.chains import area_of
+from bladegen.fitting.sections.cutting import Cutter
+from bladegen.measures import surfaces
+from bladegen.surface.mesh import TriangleMesh, from_blade
+
+SPANS = np.array([0.12, 0.3, 0.5, 0.75, 0.9])
+
+
+@pytest.fixture(scope="session")
+def dtu():
+    return bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=101)
+
+
+@pytest.fixture(scope="session")
+def coarse(dtu):
+    """The DTU 10 MW blade, which is bent upwind, as triangles that miss it by millimetres."""
+    return from_blade(dtu, stations=70)
+
+
+@pytest.fixture(scope="session")
+def fitted(coarse):
+    return bg.fit(coarse, tolerance=0.02, name="dtu", samples=600)
+
+
+def chord_lines(blade, eta):
+    """Chord and twist of the chord line, by the definition of both, of dense sections."""
+    points = blade.profiles(eta)
+    curves = SectionSplines(blade.u).fit(points)
+    away = curves.trailing_edge - curves.leading_edge
+    twist = blade.twist(eta) + np.arctan2(away[:, 1], away[:, 0])
+    return curves.chord * blade.chord(eta), twist
+
+
+def test_a_blade_comes_back_from_its_triangles(dtu, fitted):
+    eta = np.linspace(0.1, 0.98, 60)
+    chord, twist = chord_lines(dtu, eta)
+    made = fitted.definition
+    assert_allclose(made.length, dtu.length, atol=2e-3)
+    assert_allclose(made.chord(eta), chord, atol=5e-3)
+    assert_allclose(np.degrees(made.twist(eta)), np.degrees(twist), atol=0.15)
+    assert_allclose(made.axis(eta)[:, 0], dtu.axis(eta)[:, 0], atol=0.02)
+    assert fitted.held
+    assert fitted.figures["percentile_99_mm"] < 8.0
+    assert not fitted.pose.mirrored
+
+
+def test_what_is_fitted_is_measured_from_the_source_itself(dtu, fitted):
+    """Residuals say how far the source lies: moved outward, its points are farther by the move."""
+    mesh = fitted.surface.mesh
+    assert_allclose(mesh.vertices, fitted.pose(mesh.vertices), atol=1e-9)
+    assert len(fitted.points) == len(fitted.residuals) == len(fitted.spans)
+    assert sum(len(band) for band in fitted.bands()) > 0
+
+
+def test_stations_are_fewer_where_more_is_allowed(fitted):
+    from bladegen.fitting.stations import fewest
+
+    length = fitted.definition.length
+    counts = [
+        len(fewest(fitted.sections, length, tolerance, name="a")) for tolerance in (0.003, 0.03)
+    ]
+    assert counts[0] > counts[1] >= 3
+
+
+rotations = st.tuples(*[st.floats(-np.pi, np.pi)] * 3)
+
+
+def turned(angles):
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_euler("xyz", angles).as_matrix()
+
+
+def sections_of(mesh, *, metres=1.0, frame="blade"):
+    surface = surfaces.of_mesh(mesh)
+    pose = found(surface, "it", metres=metres, unit=None, frame=frame)
+    placed = pose.surface(surface)
+    length = float(placed.mesh.vertices[:, 2].max())
+    axis = measuring.axis_of(np.array([0.0, 1.0]), np.zeros(2), length)
+    return pose, measuring.measured(Cutter(placed).cuts, axis, SPANS, name="it")
+
+
+@pytest.fixture(scope="session")
+def known(coarse):
+    return sections_of(coarse)[1]
+
+
+@given(rotations, st.tuples(*[st.floats(-50, 50)] * 3), st.booleans())
+def test_a_turned_moved_mirrored_copy_is_the_same_blade(coarse, known, angles, move, mirror):
+    image = np.diag([1.0, -1.0 if mirror else 1.0, 1.0])
+    vertices = coarse.vertices @ image @ turned(angles) + move
+    pose, sections = sections_of(TriangleMesh(vertices, coarse.faces))
+    assert pose.mirrored == mirror
+    assert_allclose(sections.chord, known.chord, atol=1e-6)
+    assert_allclose(sections.twist, known.twist, atol=1e-6)
+    assert_allclose(sections.prebend, known.prebend, atol=1e-6)
+    assert_allclose(sections.offset, known.offset, atol=1e-6)
+    assert_allclose(sections.airfoils, known.airfoils, atol=1e-6)
+    assert_allclose(pose.back(pose(vertices)), vertices, atol=1e-8)
+
+
+@pytest.mark.parametrize(("unit", "scale"), [("m", 1.0), ("mm", 1e-3), ("in", 0.0254)])
+def test_units_are_found_or_believed(coarse, unit, scale):
+    mesh = TriangleMesh(coarse.vertices / scale, coarse.faces)
+    surface = surfaces.of_mesh(mesh)
+    pose = found(surface, "it", metres=None, unit=None if unit != "in" else unit)
+    assert pose.scale == scale
+    assert unit in pose.said[0]
+
+
+@pytest.mark.parametrize("axes", [np.eye(3), np.eye(3)[[2, 0, 1]], np.diag([-1.0, -1.0, 1.0])])
+def test_axes_of_the_file_are_kept_by_any_names(coarse, dtu, axes):
+    """So the pitch axis and the zero of the twist stay those of the file."""
+    mesh = TriangleMesh(coarse.vertices @ axes, coarse.faces)
+    pose, sections = sections_of(mesh, frame="auto")
+    assert_allclose(pose.axes, axes.T, atol=0)
+    assert_allclose(pose.origin, 0.0, atol=1e-9)
+    assert sections.twist[-1] < np.radians(1.0)
+
+
+def wedge(chord, twist, length=20.0, rows=81):
+    """A straight blade of cambered wedges with blunt edges, by formulas of its own."""
+    t = np.concatenate([np.linspace(1, 0, 60) ** 2, np.linspace(0, 1, 60)[1:] ** 2])
+    side = np.concatenate([np.ones(60), -np.ones(59)])
+    half = 0.3 * np.sqrt(t) * (1 - t) + 0.01 * t
+    foil = np.stack([t, side * half + 0.2 * t * (1 - t)], axis=1)
+    z = np.linspace(0.0, 1.0, rows)
+    c, b = chord(z)[:, None], twist(z)[:, None]
+    a, h = c * (foil[:, 0] - 0.3), c * foil[:, 1]
+    points = np.stack(
+        [h * np.cos(b) + a * np.sin(b), a * np.cos(b) - h * np.sin(b), z[:, None] * length + 0 * a],
+        axis=-1,
+    )
+    n = len(foil)
+    i, j = np.meshgrid(np.arange(rows - 1), np.arange(n), indexing="ij")
+    p, q = i * n + j, i * n + (j + 1) % n
+    faces = np.concatenate(
+        [np.stack([p, q, q + n], -1).reshape(-1, 3), np.stack([p, q + n, p + n], -1).reshape(-1, 3)]
+    )
+    return TriangleMesh(points.reshape(-1, 3), faces)
+
+
+@given(st.floats(0.3, 0.9), st.floats(0.0, 0.3), st.floats(-0.05, 0.05))
+def test_chord_and_twist_are_those_of_plain_formulas(taper, washout, pitch):
+    """Of a mesh that no code of this package made, open at both ends."""
+
+    def chord(z):
+        return 2.0 - 2.0 * (1.0 - taper) * z
+
+    def twist(z):
+        return pitch + washout * (1.0 - z) ** 2
+
+    surface = surfaces.of_mesh(wedge(chord, twist))
+    axis = measuring.axis_of(np.array([0.0, 1.0]), np.zeros(2), 20.0)
+    found_ = measuring.measured(Cutter(surface).cuts, axis, SPANS, name="wedge")
+    width = 0.02 * chord(SPANS)
+    assert_allclose(found_.chord, chord(SPANS), atol=2e-3)
+    assert_allclose(found_.twist, twist(SPANS), atol=2e-3)
+    edge = (found_.airfoils[:, 0] - found_.airfoils[:, -1])[:, 1] * found_.chord
+    assert_allclose(edge, width, atol=1e-3)
+
+
+def box(*sizes):
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    faces = [
+        [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+        [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3],
+    ]  # fmt: skip
+    return TriangleMesh(corners * sizes, np.array(faces))
+
+
+def two(mesh):
+    vertices = np.concatenate([mesh.vertices, mesh.vertices + np.array([8.0, 0.0, 0.0])])
+    return TriangleMesh(vertices, np.concatenate([mesh.faces, mesh.faces + len(mesh.vertices)]))
+
+
+def test_what_is_no_blade_is_one_line(coarse):
+    half = replace(coarse, faces=coarse.faces[::2], regions=None)
+    for mesh, said in (
+        (box(1.0, 1.1, 1.2), "must be at least 3 times as long as wide"),
+        (box(1.0, 1.1, 40.0), "none is the trailing edge"),
+        (two(coarse), "leave one blade in the file"),
+        (half, "is the surface whole"),
+    ):
+        with pytest.raises(GeometryError, match=said) as raised:
+            bg.fit(mesh, name="it")
+        assert "\n" not in str(raised.value)
+
+
+def test_arguments_are_looked_at(coarse):
+    for wrong, said in (
+        ({"tolerance": 0.0}, "must be positive"),
+        ({"unit": "furlong"}, "allowed are m, mm"),
+        ({"frame": "mine"}, "allowed are auto, file, blade"),
+    ):
+        with pytest.raises(BladegenError, match=said):
+            bg.fit(coarse, **wrong)
+
+
+@given(st.integers(6, 60), st.floats(0.1, 10.0), st.floats(-3.0, 3.0))
+def test_circles_are_found(count, radius, middle):
+    angle = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    points = middle + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    centre, size = outlines.circle_of(points)
+    assert_allclose(centre, middle, atol=1e-9 * (1 + radius))
+    assert_allclose(size, radius, rtol=1e-9)
+    assert outlines.is_round(points)
+    assert area_of(points) > 0
+
+
+def test_a_pose_goes_both_ways():
+    pose = Pose(1e-3, turned((0.1, 0.2, 0.3)), np.array([1.0, 2.0, 3.0]))
+    points = np.arange(12.0).reshape(4, 3)
+    assert_allclose(pose.back(pose(points)), points, atol=1e-9)
+    assert not pose.mirrored

@@ -38,7 +38,8 @@ PACKAGES = {
     "PIL": "pillow",
     "yaml": "pyyaml",
     "neuralfoil": "'bladegen[aero]'",
-    **{extra: f"'bladegen[{extra}]'" for extra in ("openmdao", "torch", "jax")},
+    **{extra: f"'bladegen[{extra}]'" for extra in ("openmdao", "torch", "jax", "xarray")},
+    "sklearn": "'bladegen[stats]' (scikit-learn)",
 }
 
 # control characters (C0, C1), those without a form of their own that turn the direction of what

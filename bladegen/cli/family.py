@@ -46,7 +46,7 @@ def family(
     count: Annotated[int | None, typer.Option(help="How many variants; 100 if not given.")] = None,
     seed: Annotated[int, typer.Option(help="Of the draws; the same seed, the same family.")] = 0,
     design: Annotated[
-        str, typer.Option(help="ellipsoid sobol lhs box normal sweep.")
+        str, typer.Option(help="ellipsoid smallest hull mixture normal sobol lhs box sweep.")
     ] = "ellipsoid",
     table: Annotated[
         Path | None,
@@ -62,7 +62,7 @@ def family(
     ] = None,
     reach: Annotated[float, typer.Option(help="Share of the space's bounds that is used.")] = 1.0,
     space: Annotated[
-        str | None, typer.Option(help="A space's file, or 'none'; the bundled one if not given.")
+        str | None, typer.Option(help="A space's file, sound, or none; the paper's if not given.")
     ] = None,
     window: Annotated[
         str | None,

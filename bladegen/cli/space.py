@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -11,6 +11,8 @@ from bladegen.cli.options.slips import Answering
 from bladegen.cli.terminal import print_findings, print_space, print_table, progress_bar
 
 __all__ = ["app"]
+
+OPEN = 0.01  # of the chord: edges of perturbed airfoils that are all sound
 
 app = typer.Typer(
     help="Make and look at shape spaces.",
@@ -37,11 +39,20 @@ def build_space(
     ] = 1000,
     modes: Annotated[int, typer.Option(help="Modes to keep.")] = 4,
     landmarks: Annotated[int, typer.Option(help="Landmarks a section, odd.")] = 401,
+    sound: Annotated[
+        bool,
+        typer.Option(
+            "--sound",
+            help="Perturbed airfoils with edges open by 1 % of the chord and evenly spaced "
+            "landmarks, without those that cross themselves.",
+        ),
+    ] = False,
     skip_unusable: Annotated[
         bool, typer.Option("--skip-unusable", help="Leave out files that hold no airfoil.")
     ] = False,
 ) -> None:
     """Learn a shape space from airfoils."""
+    from bladegen.airfoils.landmarks import uniform
     from bladegen.errors import FileError
     from bladegen.formats.airfoils.reading import airfoil_folder
     from bladegen.formats.baselines import baselines
@@ -63,7 +74,8 @@ def build_space(
             raise FileError(str(airfoils), ["holds no airfoil files"])
     with progress_bar() as progress:
         progress(f"learning from {len(found)} airfoils")
-        space, residuals = learn(found, seed=seed, count=count, modes=modes, n=landmarks)
+        how: dict[str, Any] = {"edge": OPEN, "spacing": uniform, "sound": True} if sound else {}
+        space, residuals = learn(found, seed=seed, count=count, modes=modes, n=landmarks, **how)
     space.save(output)
     if residuals:
         rows = [[name, f"{residual:.1e}"] for name, residual in residuals.items()]
@@ -73,7 +85,8 @@ def build_space(
 
 
 SpaceFile = Annotated[
-    Path | None, typer.Argument(metavar="[SPACE]", help="An npz file; the bundled space if none.")
+    Path | None,
+    typer.Argument(metavar="[SPACE]", help="An npz file, or 'sound'; the paper's if none."),
 ]
 
 

@@ -285,7 +285,7 @@ def family(
         must = "a ShapeSpace, such as bladegen.ShapeSpace.bundled(), or None"
         instance(space, ShapeSpace, "space", must, FamilyError)
     if not isinstance(design, Design):
-        design = Design.of(factors(space, bounds, reach=reach), design, count, seed)
+        design = Design.of(factors(space, bounds, reach=reach), design, count, seed, space)
     return Family(
         blade,
         space,

@@ -70,7 +70,7 @@ def perturbations(
     return (coefficients[:, None] * factors).reshape(-1, COEFFICIENTS)
 
 
-def shapes(coefficients: Array, u: Array) -> Array:
+def shapes(coefficients: Array, u: Array, edge: float = 0.0) -> Array:
     """Return landmarks of airfoils, (m, 18) to (m, n, 2), in chords.
 
     Parameters
@@ -79,13 +79,15 @@ def shapes(coefficients: Array, u: Array) -> Array:
     u : (n,) array
         Landmark parameters, as `landmarks.landmark_parameters` makes them: the leading edge is
         the point farthest from the trailing edge.
+    edge : float
+        Thickness of the trailing edge [chord]: a wedge added to both sides.
 
     Returns
     -------
     (m, n, 2) array
         Right to 1e-10 chord, to 1e-9 where the leading edge lies behind x = 0.
     """
-    points, tangents = _curve(coefficients, *_grid())
+    points, tangents = _curve(coefficients, *_grid(), edge)
     speed = np.linalg.norm(tangents, axis=-1)
     nose = _farthest(points, tangents)
     arc = _running_length(points, tangents, speed)
@@ -96,12 +98,17 @@ def shapes(coefficients: Array, u: Array) -> Array:
     return np.stack([_hermite_at(place, points[..., i], tangents[..., i]) for i in (0, 1)], axis=-1)
 
 
-def standardised_shapes(coefficients: Array, n: int = 401) -> Array:
-    """Return the points of Gr(n, 2) of airfoils, (m, 18) to (m, n, 2), in chunks."""
-    u = landmark_parameters(n)
-    result = np.empty((len(coefficients), n, 2))
+def standardised_shapes(
+    coefficients: Array, n: int = 401, *, u: Array | None = None, edge: float = 0.0
+) -> Array:
+    """Return the points of Gr(n, 2) of airfoils, (m, 18) to (m, n, 2), in chunks.
+
+    `u` and `edge` are those of `shapes`; without `u` the n landmarks lie as `landmarks` has them.
+    """
+    u = landmark_parameters(n) if u is None else u
+    result = np.empty((len(coefficients), len(u), 2))
     for part in _chunks(len(coefficients)):
-        result[part] = affine.standardise(shapes(coefficients[part], u))[0]
+        result[part] = affine.standardise(shapes(coefficients[part], u, edge))[0]
     return result
 
 
@@ -147,7 +154,7 @@ def _grid() -> tuple[Array, Array, Array, Array]:
 
 
 def _curve(
-    coefficients: Array, phi: Array, x: Array, value: Array, slope: Array
+    coefficients: Array, phi: Array, x: Array, value: Array, slope: Array, edge: float
 ) -> tuple[Array, Array]:
     """Points (m, c, 2) of the airfoils on the grid, and slopes (m, c - 1, 2, 2) a cell.
 
@@ -157,11 +164,13 @@ def _curve(
     middle = len(phi) // 2
     suction, pressure = coefficients[:, : DEGREE + 1], coefficients[:, DEGREE + 1 :]
     y = np.concatenate([suction @ value[:middle].T, pressure @ value[middle:].T], axis=1)
-    points = np.stack([np.broadcast_to(x, y.shape), y], axis=-1)
+    wedge = np.where(np.arange(len(phi)) < middle, 0.5 * edge, -0.5 * edge)
+    points = np.stack([np.broadcast_to(x, y.shape), y + wedge * x], axis=-1)
     # At the nose itself `slope` is that of the pressure side; the suction side's is its negative.
     to_nose = np.concatenate([slope[:middle], -slope[middle : middle + 1]])
     dy = np.concatenate([_ends(suction @ to_nose.T), _ends(pressure @ slope[middle:].T)], axis=1)
     dx = np.broadcast_to(_ends(0.5 * np.sin(phi)), dy.shape)
+    dy = dy + wedge[:-1, None] * dx
     return points, np.stack([dx, dy], axis=-1) * (phi[1] - phi[0])
 
 

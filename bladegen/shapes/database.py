@@ -6,7 +6,8 @@ takes 1,000 of each of 16 airfoils (`formats.baselines`).
 
 import numpy as np
 
-from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.airfoils.landmarks import Spacing, clustered, landmark_parameters, landmarks
+from bladegen.curves.crossing import crossing_sections
 from bladegen.shapes import cst
 from bladegen.shapes.affine import standardise
 from bladegen.shapes.shape_space import ShapeSpace
@@ -14,6 +15,8 @@ from bladegen.support.arrays import Array
 from bladegen.support.threads import one_thread
 
 __all__ = ["build_space"]
+
+CHUNK = 500  # shapes that are tested at once
 
 
 def build_space(
@@ -24,6 +27,9 @@ def build_space(
     modes: int = 4,
     n: int = 401,
     reach: float = 0.2,
+    edge: float = 0.0,
+    spacing: Spacing = clustered,
+    sound: bool = False,
 ) -> tuple[ShapeSpace, dict[str, float]]:
     """Learn a space from perturbations of airfoils' CST coefficients.
 
@@ -41,6 +47,12 @@ def build_space(
         Landmarks.
     reach : float
         Largest relative change of a coefficient.
+    edge : float
+        Thickness of the perturbed airfoils' trailing edges [chord]; the paper's are sharp.
+    spacing : callable
+        Of the landmarks along each side.
+    sound : bool
+        Leave out perturbed airfoils that cross themselves.
 
     Returns
     -------
@@ -49,18 +61,25 @@ def build_space(
         The residual of each airfoil's CST fit, RMS [chord].
     """
     with one_thread():  # the same sums in the same order, whatever the machine
-        shapes = np.stack([landmarks(xy, n) for xy in airfoils.values()])
+        u = landmark_parameters(n, spacing)
+        shapes = np.stack([landmarks(xy, n, spacing=spacing) for xy in airfoils.values()])
         if count == 0:
             about = f"{len(airfoils)} airfoils"
-            return ShapeSpace.fit(standardise(shapes)[0], modes=modes, about=about), {}
+            return ShapeSpace.fit(standardise(shapes)[0], modes=modes, u=u, about=about), {}
         fits = [cst.fit(shape) for shape in shapes]
         coefficients = np.stack([coefficients for coefficients, _ in fits])
         drawn = cst.perturbations(coefficients, count, np.random.default_rng(seed), reach=reach)
-        space = ShapeSpace.fit(
-            cst.standardised_shapes(drawn, n),
-            modes=modes,
-            u=landmark_parameters(n),
-            about=f"{len(airfoils)} airfoils, {count} CST perturbations each of up to {reach:g}, "
-            f"seed {seed}",
+        points = cst.standardised_shapes(drawn, u=u, edge=edge)
+        about = (
+            f"{len(airfoils)} airfoils, {count} CST perturbations each of up to {reach:g}, "
+            f"seed {seed}"
         )
+        if edge:
+            about += f", trailing edges open by {edge:g} chord"
+        if sound:
+            parts = (crossing_sections(points[i : i + CHUNK]) for i in range(0, len(points), CHUNK))
+            crossing = [i * CHUNK + j for i, part in enumerate(parts) for j in part]
+            points = np.delete(points, crossing, axis=0)
+            about += f", without {len(crossing)} that cross themselves"
+        space = ShapeSpace.fit(points, modes=modes, u=u, about=about)
         return space, {name: residual for name, (_, residual) in zip(airfoils, fits, strict=True)}

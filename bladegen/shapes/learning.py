@@ -8,10 +8,11 @@ from bladegen.airfoils.landmarks import landmark_parameters
 from bladegen.errors import GeometryError, SpaceError
 from bladegen.shapes import grassmann
 from bladegen.shapes.saved_spaces import NO_SPREAD
+from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array
 from bladegen.support.threads import one_thread
 
-__all__ = ["chunks", "parameters", "principal"]
+__all__ = ["checked", "chunks", "parameters", "principal"]
 
 CHUNK = 1000  # shapes handled at once: bounds memory to some tens of megabytes
 TOLERANCE = 1e-10  # mean tangent at the Karcher mean [rad]
@@ -107,3 +108,12 @@ def _horizontal(mean: Array, modes: Array) -> Array:
 def parameters(n: int) -> Array:
     """Return landmark parameters of n points that may be no airfoil's."""
     return landmark_parameters(n) if n % 2 and n >= 5 else np.linspace(0.0, 1.0, n)
+
+
+def checked(points: Array, field: str, n: int | None = None) -> Array:
+    """Return shapes (..., n, 2) as an array, or say that they are none."""
+    values = numbers(points, field, SpaceError, "points of Gr(n, 2), (..., n, 2)")
+    if values.ndim < 2 or values.shape[-1] != 2 or (n is not None and values.shape[-2] != n):
+        wanted = f"(..., {'n' if n is None else n}, 2)"
+        raise SpaceError(f"{field}: got the shape {values.shape}, must be {wanted}")
+    return values

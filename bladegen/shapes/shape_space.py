@@ -14,11 +14,12 @@ import numpy as np
 
 from bladegen.errors import SpaceError
 from bladegen.shapes import grassmann
-from bladegen.shapes.learning import chunks, parameters, principal
+from bladegen.shapes.distributions import distribution_of, sound_at
+from bladegen.shapes.learning import checked, chunks, parameters, principal
 from bladegen.shapes.other_landmarks import evaluated
 from bladegen.shapes.saved_spaces import ORTHONORMAL, problem_of
 from bladegen.support.archive import load_arrays, save_arrays
-from bladegen.support.arguments import instance, numbers, path_of, whole
+from bladegen.support.arguments import instance, numbers, one_of, path_of, whole
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.files import require_suffix
 from bladegen.support.services import shown_by
@@ -28,6 +29,7 @@ __all__ = ["ShapeSpace"]
 
 ARRAYS = ("u", "mean", "modes", "variances", "coordinates")
 SAME_LANDMARKS = 1e-12
+FILES = {"paper": "reference.npz", "sound": "sound.npz"}  # spaces that come with bladegen
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +100,7 @@ class ShapeSpace:
         GeometryError
             If the Karcher mean does not converge.
         """
-        points = _shapes(points, "points")
+        points = checked(points, "points")
         if points.ndim != 3:
             raise SpaceError(f"points: got the shape {points.shape}, must be (shapes, n, 2)")
         count, n, _ = points.shape
@@ -119,13 +121,18 @@ class ShapeSpace:
         return cls(space.u, mean, kept, space.variances, coordinates, about)
 
     @classmethod
-    def bundled(cls) -> "ShapeSpace":
-        """Return the space of the paper's 16-airfoil database: four modes, 401 landmarks."""
-        return cls.load(Path(__file__).resolve().parent / "reference.npz")
+    def bundled(cls, name: str = "paper") -> "ShapeSpace":
+        """Return a space that comes with bladegen: four modes, 401 landmarks.
+
+        "paper" is that of the paper's 16-airfoil database; "sound" is learned from the same with
+        edges open by 1 % of the chord and even landmarks: none of its shapes crosses itself.
+        """
+        one_of(name, FILES, "space", SpaceError)
+        return cls.load(Path(__file__).resolve().parent / FILES[name])
 
     @classmethod
     def load(cls, path: str | Path) -> "ShapeSpace":
-        """Read a space from an npz file.
+        """Read a space from an npz file, or a bundled one by its name ("sound").
 
         Raises
         ------
@@ -134,10 +141,12 @@ class ShapeSpace:
             no mean, modes and spread.
         """
         place = path_of(path, "space", SpaceError)
+        if str(path) in FILES and not place.exists():
+            return cls.bundled(str(path))
         if not place.exists():
             raise SpaceError(
-                f"{path}: is no file; the bundled space is ShapeSpace.bundled(), in the shell that "
-                "without --space"
+                f"{path}: is no file; bundled spaces are {', '.join(FILES)}; the paper's is "
+                "ShapeSpace.bundled(), in the shell that without --space"
             )
         arrays, about = load_arrays(place, ARRAYS)
         problem = problem_of(arrays)
@@ -218,7 +227,7 @@ class ShapeSpace:
     def encode(self, points: Array) -> Array:
         """Return normal coordinates (..., r) of shapes (..., n, 2), any representatives."""
         # The logarithm is Y G - X H, and modes are horizontal: <Y G - X H, U> = <G, Y^T U>.
-        points = _shapes(points, "points", len(self.mean))
+        points = checked(points, "points", len(self.mean))
         G, _ = grassmann.log_factors(self.mean.T @ points)
         across = np.moveaxis(self.modes, 0, 1).reshape(len(self.mean), -1)
         inner = (points.mT @ across).reshape(*G.shape[:-1], self.dimension, 2)
@@ -279,6 +288,8 @@ class ShapeSpace:
                     )
         return None
 
+    distribution, sound = distribution_of, sound_at
+
     def _checked(self, t: Array) -> Array:
         t = numbers(t, "t", SpaceError)
         if t.ndim == 0 or t.shape[-1] != self.dimension:
@@ -287,12 +298,3 @@ class ShapeSpace:
         if not np.isfinite(t).all():
             raise SpaceError("t: coordinates must be finite")
         return t
-
-
-def _shapes(points: Array, field: str, n: int | None = None) -> Array:
-    """Return shapes (..., n, 2) as an array, or say that they are none."""
-    values = numbers(points, field, SpaceError, "points of Gr(n, 2), (..., n, 2)")
-    if values.ndim < 2 or values.shape[-1] != 2 or (n is not None and values.shape[-2] != n):
-        wanted = f"(..., {'n' if n is None else n}, 2)"
-        raise SpaceError(f"{field}: got the shape {values.shape}, must be {wanted}")
-    return values

@@ -15,6 +15,7 @@ import numpy as np
 
 from bladegen.blade.changes.deformation import RANGES, in_units
 from bladegen.errors import DesignError
+from bladegen.shapes.distributions import Distribution
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import numbers, one_of, whole
 from bladegen.support.arrays import Array, Indices, readonly
@@ -76,6 +77,11 @@ DESIGNS: dict[str, tuple[str, Points, Region]] = {
         _box,
     ),
 }
+DISTRIBUTED = {  # designs that follow a distribution of the space's data, by its name
+    "smallest": ("ellipsoid", "independent, in the smallest ellipsoid that holds the data"),
+    "hull": ("hull", "independent, in the convex hull of the data"),
+    "mixture": ("mixture", "independent, of normal distributions that overlap, by BIC"),
+}
 FIXED = ("sweep", "table")  # designs whose points are wanted as they are
 
 
@@ -95,6 +101,10 @@ class Design:
         How many variants.
     table : (count, d) array, optional
         Where each variant of a "table" lies.
+    distribution : Distribution, optional
+        What coordinates of shape follow, as a share of them.
+    share : float
+        Of the distribution's coordinates.
     """
 
     what: Factors
@@ -102,6 +112,8 @@ class Design:
     seed: int
     count: int
     table: Array | None = field(default=None, repr=False)
+    distribution: Distribution | None = field(default=None, repr=False)
+    share: float = 1.0
 
     def __repr__(self) -> str:
         names = ", ".join(self.what.names)
@@ -112,15 +124,17 @@ class Design:
             object.__setattr__(self, "table", readonly(self.table))
 
     @classmethod
-    def of(cls, what: Factors, kind: str, count: int, seed: Seed) -> "Design":
-        """Plan `count` variants.
+    def of(
+        cls, what: Factors, kind: str, count: int, seed: Seed, space: ShapeSpace | None = None
+    ) -> "Design":
+        """Plan `count` variants; those that follow a distribution of data need their space.
 
         Raises
         ------
         DesignError
             If there is no such kind, or count or seed are out of range.
         """
-        one_of(kind, DESIGNS, "design", DesignError)
+        one_of(kind, DESIGNS | DISTRIBUTED, "design", DesignError)
         count = whole(count, "count", DesignError)
         if not 1 <= count <= MOST:
             raise DesignError(f"count: got {count}, allowed is 1 to {MOST}")
@@ -129,7 +143,13 @@ class Design:
                 f"count: got {count}, a Latin hypercube is drawn whole: allowed is 1 to "
                 f"{MOST_LATIN}; sobol takes any number"
             )
-        return cls(what, kind, seed_of(seed), count)
+        if kind not in DISTRIBUTED:
+            return cls(what, kind, seed_of(seed), count)
+        if space is None:
+            raise DesignError(f"design: {kind!r} follows the data of a shape space; give one")
+        distribution = space.distribution(DISTRIBUTED[kind][0])
+        share = what.reach / space.extent
+        return cls(what, kind, seed_of(seed), count, distribution=distribution, share=share)
 
     def __len__(self) -> int:
         return self.count
@@ -138,6 +158,9 @@ class Design:
         """Return where variants lie, their first attempts, (b, d)."""
         if self.table is not None:
             return self.table[index]
+        if self.distribution is not None:
+            unit = draws.independent(index, self.count, len(self.what.names) + 1, self.seed)
+            return self._distributed(unit)
         _, points, region = DESIGNS[self.kind]
         unit = points(np.asarray(index), self.count, len(self.what.names), self.seed)
         return region(self.what, unit)
@@ -154,11 +177,22 @@ class Design:
 
     def redrawn(self, index: Indices, attempt: int | Indices) -> Array:
         """Return other values (m, d) of some variants: independent draws in the same region."""
-        region = DESIGNS[self.kind][2]
-        dimension = len(self.what.names)
+        follows = self.distribution is not None
+        dimension = len(self.what.names) + follows
         each = (some.tolist() for some in np.broadcast_arrays(index, attempt))
         unit = [draws.point(self.seed, i, a, dimension) for i, a in zip(*each, strict=True)]
-        return region(self.what, np.stack(unit))
+        if follows:
+            return self._distributed(np.stack(unit))
+        return DESIGNS[self.kind][2](self.what, np.stack(unit))
+
+    def _distributed(self, unit: Array) -> Array:
+        """Carry points (m, d + 1) of a cube to where the distribution and bounds have them."""
+        assert self.distribution is not None
+        result, shape = _box(self.what, unit[:, :-1]), np.flatnonzero(self.what.spread > 0)
+        of_data = [*range(self.distribution.dimension), -1]
+        t = self.share * self.distribution.density.carried(unit[:, of_data])
+        result[:, shape] = t[:, shape]  # coordinates come first among factors
+        return result
 
 
 def tabulated(space: ShapeSpace | None, columns: Mapping[str, Sequence[float] | Array]) -> Design:

@@ -15,7 +15,7 @@ from typing import Any, SupportsIndex
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.errors import FamilyError, PlaceError
+from bladegen.errors import FamilyError, MissingLibraryError, PlaceError
 from bladegen.families.dataset.graphs import edges, surface, triangles
 from bladegen.families.dataset.replanning import planned_again
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
@@ -237,8 +237,10 @@ class LoadedFamily:
 
     def dataset(self) -> Any:
         """Return the store as an `xarray.Dataset`, where xarray is installed."""
-        import xarray
-
+        try:
+            import xarray
+        except ImportError as error:
+            raise MissingLibraryError(error) from None
         return xarray.open_zarr(self.path / "sections.zarr")
 
 

@@ -26,6 +26,7 @@ test-all: lint ## the same with what explores: nightly, and before a release
 docs: ## set up and build the documentation into site/; warnings are errors
 	@./scripts/setup.sh test
 	NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --quiet
+	.venv/bin/python scripts/search.py site
 
 bench: ## measure all benchmarks and write docs/measured.md
 	@./scripts/setup.sh test

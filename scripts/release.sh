@@ -5,6 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 rm -rf dist/*.whl dist/*.tar.gz
 .venv/bin/python -m hatchling build -d dist
+.venv/bin/twine check --strict dist/*
 room="$(mktemp -d)"
 trap 'rm -rf "$room"' EXIT
 .venv/bin/python -m venv "$room/venv"

@@ -1,5 +1,5 @@
-# Two images: `core` reads, perturbs and writes blades (0.7 GB); `full` has pictures, families,
-# polars and the studio as well (2.5 GB).
+# Two images: `core` reads, perturbs and writes blades (1.1 GB); `full` has pictures, families,
+# polars and the studio as well (3.1 GB).
 #   docker build --target core -t bladegen:core .
 #   docker build -t bladegen .
 #   docker run --rm -v "$PWD:/work" bladegen build iea15mw -o out/

@@ -12,6 +12,10 @@ import bladegen as bg
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.errors import BladegenError, GeometryError
 from bladegen.fitting import measuring
+from bladegen.fitting.clouds.coordinates import about
+from bladegen.fitting.clouds.reading import is_cloud, points_of
+from bladegen.fitting.clouds.surface import surface_of_points
+from bladegen.fitting.placing.copies import one_of_copies
 from bladegen.fitting.placing.finding import found
 from bladegen.fitting.placing.pose import Pose
 from bladegen.fitting.sections import outlines
@@ -125,6 +129,12 @@ def test_units_are_found_or_believed(coarse, unit, scale):
     assert unit in pose.said[0]
 
 
+def test_a_file_whose_metres_are_called_millimetres_is_told_of(coarse):
+    small = surfaces.of_mesh(TriangleMesh(coarse.vertices * 1e-3, coarse.faces))
+    pose = found(small, "it", metres=1.0, unit=None)
+    assert "m long: if its millimetres are metres, --unit m" in pose.said[0]
+
+
 @pytest.mark.parametrize("axes", [np.eye(3), np.eye(3)[[2, 0, 1]], np.diag([-1.0, -1.0, 1.0])])
 def test_axes_of_the_file_are_kept_by_any_names(coarse, dtu, axes):
     """So the pitch axis and the zero of the twist stay those of the file."""
@@ -186,8 +196,8 @@ def box(*sizes):
     return TriangleMesh(corners * sizes, np.array(faces))
 
 
-def two(mesh):
-    vertices = np.concatenate([mesh.vertices, mesh.vertices + np.array([8.0, 0.0, 0.0])])
+def two(mesh, scale=0.9):
+    vertices = np.concatenate([mesh.vertices, scale * mesh.vertices + np.array([8.0, 0.0, 0.0])])
     return TriangleMesh(vertices, np.concatenate([mesh.faces, mesh.faces + len(mesh.vertices)]))
 
 
@@ -202,6 +212,67 @@ def test_what_is_no_blade_is_one_line(coarse):
         with pytest.raises(GeometryError, match=said) as raised:
             bg.fit(mesh, name="it")
         assert "\n" not in str(raised.value)
+
+
+def test_one_of_several_copies_is_taken(coarse):
+    alone, said = one_of_copies(two(coarse, 1.0))
+    assert len(alone.faces) == len(coarse.faces)
+    assert_allclose(alone.volume, coarse.volume, rtol=1e-12)
+    assert "2 copies of a blade, and 0 other parts" in said[0]
+    assert one_of_copies(coarse) == (coarse, ())
+    assert one_of_copies(two(coarse, 0.9))[1] == ()
+
+
+@pytest.mark.parametrize("suffix", [".xyz", ".csv", ".ply"])
+def test_points_come_from_files(tmp_path, suffix, foreign_here):
+    import trimesh
+
+    points = np.random.default_rng(3).normal(size=(50, 3))
+    path = tmp_path / f"scan{suffix}"
+    if suffix == ".ply":
+        trimesh.PointCloud(points).export(path)
+    else:
+        mark = "," if suffix == ".csv" else " "
+        np.savetxt(path, points, delimiter=mark, header="x,y,z" if mark == "," else "", comments="")
+    assert is_cloud(path)
+    assert_allclose(points_of(path), points, atol=1e-6)
+
+
+def test_points_that_are_none_are_one_line(tmp_path):
+    path = tmp_path / "a.xyz"
+    path.write_text("nothing\n")
+    with pytest.raises(BladegenError, match="holds three numbers x, y, z"):
+        bg.fit(path)
+    with pytest.raises(GeometryError, match="100 points, at least 2000 are needed"):
+        bg.fit(np.random.default_rng(1).normal(size=(100, 3)))
+    with pytest.raises(GeometryError, match="must be a slender body"):
+        bg.fit(np.random.default_rng(1).normal(size=(5000, 3)))
+
+
+def test_a_cloud_with_noise_and_holes_is_smoothed(dtu, coarse):
+    """Against the blade itself, by distances that the fit does not use."""
+    import trimesh
+
+    from bladegen.measures import distances
+
+    rng = np.random.default_rng(5)
+    fine = trimesh.Trimesh(coarse.vertices, coarse.faces, process=False)
+    points, _ = trimesh.sample.sample_surface(fine, 60_000, seed=2)
+    points = points + 0.003 * rng.normal(size=points.shape)
+    for centre in points[rng.integers(len(points), size=20)]:
+        points = points[np.linalg.norm(points - centre, axis=1) > 1.0]
+    cloud = surface_of_points(points, "scan")
+    assert cloud.noise == pytest.approx(0.003, rel=0.4)
+    some = cloud.mesh.vertices.reshape(360, 480, 3)[20:-20:20, ::24].reshape(-1, 3)
+    off = np.abs(distances.signed(some, surfaces.of_mesh(coarse)))
+    assert np.percentile(off, 90) < 0.015
+
+
+def test_coordinates_of_clouds_go_both_ways(coarse):
+    points = coarse.vertices[coarse.vertices[:, 2] > 0.5]
+    ellipses = about(coarse.vertices[coarse.vertices[:, 2] > 0.0])
+    rho, phi = ellipses.flattened(points)
+    assert_allclose(ellipses.points(rho, phi, points[:, 2]), points, atol=1e-9)
 
 
 def test_arguments_are_looked_at(coarse):

@@ -37,7 +37,10 @@ class Frame(StrEnum):
 def fit(
     source: Annotated[
         Path,
-        typer.Argument(metavar="SOURCE", help="A CAD file (STEP, IGES, BREP) or a mesh file."),
+        typer.Argument(
+            metavar="SOURCE",
+            help="A CAD file (STEP, IGES, BREP), a mesh, or points (.xyz .csv .ply).",
+        ),
     ],
     target: Annotated[
         Path,

@@ -16,8 +16,11 @@ from bladegen.blade.edges import AsGiven
 from bladegen.definition.distribution import pchip
 from bladegen.definition.reference_axis import ReferenceAxis
 from bladegen.errors import BladegenError, Finding, GeometryError
+from bladegen.fitting.clouds.reading import is_cloud, points_of
+from bladegen.fitting.clouds.surface import surface_of_points
 from bladegen.fitting.fitted import Fitted
 from bladegen.fitting.measuring import Cutting, Sections, axis_of, measured, settled
+from bladegen.fitting.placing.copies import one_of_copies
 from bladegen.fitting.placing.finding import FRAMES, UNITS, found
 from bladegen.fitting.sections.cutting import Cutter
 from bladegen.fitting.smoothing import steady_twist, with_twist
@@ -25,8 +28,7 @@ from bladegen.fitting.stations import definition_of, fewest
 from bladegen.fitting.tips import length_along
 from bladegen.measures import distances, surfaces
 from bladegen.measures.sides import Side, surface_of
-from bladegen.measures.surfaces import Surface
-from bladegen.support.arguments import amount, one_of, whole
+from bladegen.support.arguments import amount, numbers, one_of, whole
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
 
@@ -56,7 +58,7 @@ SAMPLES = 6_000  # points of the source that are held against the blade
 
 
 def fit(
-    source: str | Path | Side | TriangleMesh,
+    source: str | Path | Side | TriangleMesh | Array,
     *,
     tolerance: float = TOLERANCE,
     unit: str | None = None,
@@ -69,12 +71,14 @@ def fit(
 
     Parameters
     ----------
-    source : str, Path or TriangleMesh
-        A CAD file (STEP, IGES, BREP) or a mesh file (STL, PLY, OBJ, GLB, ...), or triangles [m].
+    source : str, Path, TriangleMesh or (m, 3) array
+        A CAD file (STEP, IGES, BREP), a mesh file (STL, PLY, OBJ, GLB, ...) or points (.xyz, .csv,
+        .ply without triangles); triangles or points [m].
     tolerance : float
         Distance to the surface that 99 % of its points shall keep [m].
     unit : str, optional
-        "m", "mm", "cm", "in" or "ft"; by default what the file says, or what its size suggests.
+        "m", "mm", "cm", "in" or "ft"; by default what the file says, or what its size suggests. Of
+        a CAD file, what its millimetres are.
     frame : str
         "auto", "file" or "blade": see `pose.found`.
     name : str, optional
@@ -103,7 +107,9 @@ def fit(
     if unit is not None:
         one_of(unit, UNITS, "unit", BladegenError)
     progress("reading")
-    side = _side(source)
+    side, cloud, noise = _side(source)
+    if unit is not None and side.surface.patches:  # CAD files are read as millimetres
+        side = replace(side, surface=side.surface.scaled(1e3))
     called = name or (Path(source).stem if isinstance(source, str | Path) else "blade")
     said_of = str(source) if isinstance(source, str | Path) else called
     progress("finding the blade")
@@ -119,22 +125,55 @@ def fit(
     text = said_of if isinstance(source, str | Path) else ""
     definition = definition_of(sections, rows, length, name=called, source=text)
     progress("measuring distances")
-    points = _sample(surface, whole(samples, "samples", BladegenError))
+    points = _sample(
+        surface.mesh.vertices[np.unique(surface.mesh.faces)] if cloud is None else pose(cloud),
+        whole(samples, "samples", BladegenError),
+    )
     blade = Blade.from_definition(definition, trailing_edge=AsGiven())
     residuals = distances.signed(points, surfaces.of_blade(blade))
     findings = [Finding("source", text) for text in (*pose.said, *side.remarks)]
     spans = np.clip(points[:, 2] / length, 0.0, 1.0)
     return Fitted(
-        definition, pose, sections, surface, points, residuals, spans, tolerance, tuple(findings)
+        definition,
+        pose,
+        sections,
+        surface,
+        points,
+        residuals,
+        spans,
+        tolerance,
+        pose.scale * noise,
+        tuple(findings),
     )
 
 
-def _side(source: str | Path | Side | TriangleMesh) -> Side:
+def _side(
+    source: str | Path | Side | TriangleMesh | Array,
+) -> tuple[Side, Array | None, float]:
+    """Return a source's surface, its points if it has no surface of its own, and their noise."""
+    if isinstance(source, np.ndarray):
+        return _clouded(numbers(source, "source", BladegenError, "points (m, 3)"), "the points")
+    if isinstance(source, str | Path) and is_cloud(Path(source)):
+        return _clouded(points_of(Path(source)), str(source))
     if isinstance(source, Side):
-        return source
-    if isinstance(source, TriangleMesh):
-        return Side("the mesh", surfaces.of_mesh(source))
-    return surface_of(Path(source))
+        side = source
+    elif isinstance(source, TriangleMesh):
+        side = Side("the mesh", surfaces.of_mesh(source))
+    else:
+        side = surface_of(Path(source))
+    if not side.surface.patches:
+        mesh, said = one_of_copies(side.surface.mesh)
+        side = replace(side, surface=surfaces.of_mesh(mesh), remarks=side.remarks + said)
+    return side, None, 0.0
+
+
+def _clouded(points: Array, name: str) -> tuple[Side, Array, float]:
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise BladegenError(f"source: got the shape {points.shape}, must be points (m, 3)")
+    cloud = surface_of_points(points, name)
+    said = f"{len(points)} points, smoothed; they scatter by {cloud.noise:.3g} of their unit"
+    side = Side(name, surfaces.of_mesh(cloud.mesh), measured=False, remarks=(said,))
+    return side, points, cloud.noise
 
 
 def _sections(cuts: Cutting, points: Array, tolerance: float, name: str) -> tuple[Sections, float]:
@@ -214,8 +253,6 @@ def _refined(
     return sections.eta
 
 
-def _sample(surface: Surface, count: int) -> Array:
-    """Return some of a surface's vertices, evenly over the file."""
-    used = np.unique(surface.mesh.faces)
-    step = max(1, -(-len(used) // max(count, 1)))
-    return surface.mesh.vertices[used[::step]]
+def _sample(points: Array, count: int) -> Array:
+    """Return some of the points (m, 3), evenly over the file."""
+    return points[:: max(1, -(-len(points) // max(count, 1)))]

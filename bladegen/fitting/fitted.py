@@ -26,6 +26,7 @@ __all__ = ["Fitted", "Place"]
 
 BANDS = 20  # of the span, in the table of residuals
 HELD = 99.0  # per cent of the points that are within the tolerance
+NORMAL = 2.576  # standard deviations, within which 99 % of normal noise are
 MILLIMETRES = 1e3
 
 
@@ -76,6 +77,8 @@ class Fitted:
         [m], and their span fractions.
     tolerance : float
         What was asked for [m].
+    noise : float
+        Standard deviation of the source's points about a smooth surface [m]; 0 of surfaces.
     findings : tuple of Finding
         How it was read, and what looks odd.
     """
@@ -88,6 +91,7 @@ class Fitted:
     residuals: Array
     spans: Array
     tolerance: float
+    noise: float = 0.0
     findings: tuple[Finding, ...] = ()
 
     def __repr__(self) -> str:
@@ -119,12 +123,14 @@ class Fitted:
             "percentile_99_mm": float(np.percentile(off, HELD)),
             "rms_mm": float(np.sqrt(np.mean(off**2))),
             "tolerance_mm": MILLIMETRES * self.tolerance,
+            "noise_mm": MILLIMETRES * self.noise,
         }
 
     @property
     def held(self) -> bool:
-        """Whether 99 % of the points are within the tolerance."""
-        return bool(self.figures["percentile_99_mm"] <= MILLIMETRES * self.tolerance)
+        """Whether 99 % of the points are within the tolerance, and their own noise."""
+        allowed = MILLIMETRES * (self.tolerance + NORMAL * self.noise)
+        return bool(self.figures["percentile_99_mm"] <= allowed)
 
     def require_held(self) -> None:
         """Raise a `BladegenError` that says where, unless the tolerance is held."""

@@ -81,7 +81,7 @@ def ask(what: str, path: Path) -> Answer:
     Parameters
     ----------
     what : str
-        A question of `foreign_reader.QUESTIONS`: "figures" or "surface".
+        A question of `foreign_reader.QUESTIONS`: "figures", "surface" or "points".
     path : Path
         A CAD or mesh file that anyone made.
 

@@ -115,6 +115,17 @@ def _surface(path: Path) -> Answer:
     return Answer({"metres": metres, "lost": 0}, arrays)
 
 
+def _points(path: Path) -> Answer:
+    """Send the points of a file that has no triangles."""
+    import io
+
+    import trimesh
+
+    kind = path.suffix.lower().lstrip(".")
+    loaded = trimesh.load(io.BytesIO(path.read_bytes()), file_type=kind, resolver=None)
+    return Answer({}, {"points": np.asarray(loaded.vertices, dtype=np.float64)})
+
+
 METRES = {
     "micron": 1e-6,
     "millimeter": 1e-3,
@@ -123,4 +134,8 @@ METRES = {
     "foot": 0.3048,
     "meter": 1.0,
 }
-QUESTIONS: dict[str, Callable[[Path], Answer]] = {"figures": _figures, "surface": _surface}
+QUESTIONS: dict[str, Callable[[Path], Answer]] = {
+    "figures": _figures,
+    "surface": _surface,
+    "points": _points,
+}

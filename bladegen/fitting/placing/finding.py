@@ -18,6 +18,7 @@ __all__ = ["FRAMES", "UNITS", "found"]
 FRAMES = ("auto", "file", "blade")
 UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "ft": 0.3048}
 METRES, MILLIMETRES = 300.0, 2000.0  # lengths below the first are metres, above the other mm
+SHORTEST = 1.0  # m of a blade; shorter ones are worth a word
 PLANES = 41  # at which a surface is first looked at
 SLENDER = 3.0  # times as long as wide, at least
 ALIGNED = np.radians(0.3)  # between the pitch axis and an axis of the file
@@ -101,6 +102,8 @@ def _scaled(
         scale, said = UNITS[unit], f"the unit is {unit}, as asked"
     elif metres is not None:
         scale, said = metres, "the file says its unit"
+        if metres * length < SHORTEST:
+            said += f"; it is {metres * length:.3g} m long: if its millimetres are metres, --unit m"
     else:
         name = "m" if length < METRES else "mm" if length > MILLIMETRES else "cm"
         scale = UNITS[name]

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from bladegen.exports.exporters import export
     from bladegen.families.dataset.loading import load_family
     from bladegen.families.family import Family, family
+    from bladegen.fitting.deviations import DeviationMap
     from bladegen.fitting.fit import fit
     from bladegen.fitting.fitted import Fitted
     from bladegen.formats.airfoils.writing import write_airfoil
@@ -51,6 +52,7 @@ _HOME = {
     "BladeDefinition": "definition.blade_definition",
     "BladegenError": "errors",
     "Coordinates": "blade.changes.deformation",
+    "DeviationMap": "fitting.deviations",
     "Distribution": "definition.distribution",
     "Family": "families.family",
     "Finding": "errors",
@@ -82,6 +84,7 @@ __all__ = [
     "BladeDefinition",
     "BladegenError",
     "Coordinates",
+    "DeviationMap",
     "Distribution",
     "Family",
     "Finding",

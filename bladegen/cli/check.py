@@ -9,6 +9,7 @@ import typer
 
 from bladegen.cli.options.common import MAKING, Json, Making, ending_in
 from bladegen.cli.options.groups import COMMAND, grouped
+from bladegen.cli.options.targets import each_ending_in
 from bladegen.cli.terminal import print_figures, print_findings, print_table, progress_bar
 from bladegen.errors import BladegenError
 
@@ -37,6 +38,14 @@ def check(
             callback=ending_in(".png"),
         ),
     ] = None,
+    deviation: Annotated[
+        list[Path] | None,
+        typer.Option(
+            help="With a definition as OTHER: FILE's distance from it over span and arc as a .csv, "
+            ".png or .vtp file; repeated for several.",
+            callback=each_ending_in(".csv", ".png", ".vtp"),
+        ),
+    ] = None,
     as_json: Json = False,
     making: Making = MAKING,
 ) -> None:
@@ -52,10 +61,12 @@ def check(
                 f"{other}: of two, a definition is made as the other one was; build it as it shall "
                 "be, and check its file"
             )
-        _compare(file, other, screenshot, making, as_json)
+        _compare(file, other, screenshot, making, as_json, tuple(deviation or ()))
         return
     if screenshot is not None:
         raise BladegenError("screenshot: a picture is made of two files; name another one")
+    if deviation:
+        raise BladegenError("deviation: is from a definition; name one as OTHER")
     from bladegen.exports.inventory import made_by
     from bladegen.measures import checks
 
@@ -115,7 +126,14 @@ def _stripes(thing: Any, target: Path) -> None:
             draw(sheets_of(thing), thing.name, temporary)
 
 
-def _compare(file: str, other: str, screenshot: Path | None, making: Making, as_json: bool) -> None:
+def _compare(
+    file: str,
+    other: str,
+    screenshot: Path | None,
+    making: Making,
+    as_json: bool,
+    deviation: tuple[Path, ...],
+) -> None:
     """Measure two surfaces against each other and print, or draw, what was found."""
     from bladegen.cli.options.provenance import alike
     from bladegen.exports.marks import marked
@@ -129,6 +147,10 @@ def _compare(file: str, other: str, screenshot: Path | None, making: Making, as_
         one, two = (surface_of(*pair) for pair in zip(things, tips, strict=True))
         progress("measuring distances")
         found = compared(one, two)
+        figures = found.figures
+        if deviation:
+            progress("mapping deviations")
+            figures |= _deviate(found.one, things[1], deviation)
         if screenshot is not None:
             progress("rendering")
             with marked(
@@ -137,14 +159,14 @@ def _compare(file: str, other: str, screenshot: Path | None, making: Making, as_
                 draw(found, f"{file} against {other}", temporary)
     if as_json:
         said = {"source": file, "other": other, "note": "; ".join(found.notes), "made": differing}
-        typer.echo(json.dumps({**said, **found.figures, "bands": found.bands()}, indent=2))
+        typer.echo(json.dumps({**said, **figures, "bands": found.bands()}, indent=2))
         return
     for note in (*found.notes, *differing):  # first: all that follows rests on it
         typer.echo(f"note: {note}")
     for thing in things:
         if not isinstance(thing, Path):
             print_findings([str(finding) for finding in thing.findings])
-    print_figures(f"{file} against {other}", found.figures)
+    print_figures(f"{file} against {other}", figures)
     rows = [
         [
             f"{band['from_z_m']:.2f} to {band['to_z_m']:.2f}",
@@ -153,5 +175,21 @@ def _compare(file: str, other: str, screenshot: Path | None, making: Making, as_
         for band in found.bands()
     ]
     print_table(["z, m", "largest, mm", "RMS, mm", "mean (outside +), mm"], rows)
-    if screenshot is not None:
-        typer.echo(f"wrote {screenshot}")
+    for path in (*deviation, *([screenshot] if screenshot is not None else [])):
+        typer.echo(f"wrote {path}")
+
+
+def _deviate(surface: Any, blade: Any, paths: tuple[Path, ...]) -> dict[str, float]:
+    """Write the map of a surface's deviation from a blade, and return its figures."""
+    from bladegen.exports.marks import marked
+    from bladegen.exports.provenance import drawn_of
+    from bladegen.fitting.deviations import DeviationMap
+    from bladegen.views.deviations import figures_of, write
+
+    if isinstance(blade, Path):
+        raise BladegenError(f"deviation: {blade} is no definition; name one as OTHER")
+    deviation = DeviationMap.measured(blade, surface)
+    for path in paths:
+        with marked(path, drawn_of(blade, command=COMMAND.get())) as temporary:
+            write(deviation, blade, temporary)
+    return figures_of(deviation, blade)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["Target", "ending_in"]
+__all__ = ["Target", "each_ending_in", "ending_in"]
 
 
 def ending_in(*suffixes: str) -> Callable[[typer.CallbackParam, Path | None], Path | None]:
@@ -18,6 +18,18 @@ def ending_in(*suffixes: str) -> Callable[[typer.CallbackParam, Path | None], Pa
         if value is not None:
             require_suffix(value, suffixes, param.opts[-1])
         return value
+
+    return checked
+
+
+def each_ending_in(*suffixes: str) -> Callable[..., list[Path] | None]:
+    """Return a callback that refuses any of several output files as `ending_in` does."""
+    one = ending_in(*suffixes)
+
+    def checked(param: typer.CallbackParam, values: list[Path] | None) -> list[Path] | None:
+        for value in values or ():
+            one(param, value)
+        return values
 
     return checked
 

@@ -1,0 +1,114 @@
+"""Deviations from a blade: patterns, what is measured of them, and their parts."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from typer.testing import CliRunner
+
+import bladegen as bg
+from bladegen.cli import commands
+from bladegen.errors import BladegenError
+from bladegen.fitting.deviations import DeviationMap
+from bladegen.measures import surfaces
+from bladegen.surface.mesh import from_blade
+
+RUN = CliRunner()
+
+
+@pytest.fixture(scope="module")
+def blade():
+    return bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101, fairing=None)
+
+
+@pytest.fixture(scope="module")
+def eroded(blade):
+    return DeviationMap.erosion(blade, start=0.6, width=0.06, depth=0.005)
+
+
+def test_no_deviation_leaves_every_landmark_where_it_is(blade):
+    eta = np.linspace(0.0, 1.0, 60)
+    same = DeviationMap(eta, blade.u, np.zeros((60, 101))).applied(blade)
+    # the finish of edges of 2 mm is normal to chord lines, which turn where sections are thick
+    assert_allclose(same.sections(eta), blade.sections(eta), atol=1e-5)
+
+
+def test_landmarks_move_by_what_the_map_says_and_inward(blade, eroded):
+    moved = eroded.applied(blade).sections(eroded.eta) - blade.sections(eroded.eta)
+    # edges of 2 mm are finished after the move, within 20 % of the chord from the trailing edge
+    front = slice(30, 71)
+    far = np.linalg.norm(moved, axis=-1)[:, front]
+    assert_allclose(far, -eroded.values[:, front], atol=2e-6)
+    assert far.max() == pytest.approx(0.005, rel=1e-3)
+    assert far[eroded.eta < 0.6].max() < 1e-6
+
+
+def test_a_dent_is_as_deep_and_as_wide_as_it_is_said_to_be(blade):
+    dent = DeviationMap.dent(blade, eta=0.5, u=0.2, size=0.8, depth=0.01)
+    assert -dent.values.min() == pytest.approx(0.01, rel=0.1)
+    assert dent.values.max() == 0.0
+    points = blade.sections(dent.eta)
+    middle = blade.sections(np.array([0.5]), np.array([0.2]))[0, 0]
+    away = np.linalg.norm(points - middle, axis=-1)
+    assert np.all(dent.values[away > 0.4] == 0.0)
+
+
+def test_what_is_put_on_is_measured_again(blade, eroded):
+    """From triangles of the eroded blade, which know nothing of the map."""
+    mesh = from_blade(eroded.applied(blade), stations=160)
+    found = DeviationMap.measured(blade, surfaces.of_mesh(mesh), spans=41)
+    nose = found.values[:, 50]
+    wanted = np.interp(found.eta, eroded.eta, eroded.values[:, 50])
+    assert_allclose(nose[1:-1], wanted[1:-1], atol=1.5e-3)
+    assert np.abs(found.values[found.eta < 0.55][1:]).max() < 2e-3
+
+
+def test_parts_are_all_of_it_and_maps_of_sections_are_affine(blade):
+    eta = np.linspace(0.3, 1.0, 12)
+    profiles = blade.profiles(eta)
+    along = np.gradient(profiles, axis=1)
+    normal = along[..., ::-1] * [1.0, -1.0]
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    thicker = DeviationMap(eta, blade.u, 0.02 * profiles[..., 1] * normal[..., 1])
+    parts = thicker.parts(blade)
+    assert_allclose(parts["affine"], thicker.values, atol=1e-12)
+    rng = np.random.default_rng(2)
+    noise = DeviationMap(eta, blade.u, rng.normal(size=(12, 101)))
+    parts = noise.parts(blade)
+    assert_allclose(sum(parts.values()), noise.values, atol=1e-12)
+    squares = [np.sum(part**2) for part in parts.values()]
+    assert squares[2] < np.sum(noise.values**2)
+
+
+def test_maps_are_looked_at(blade):
+    with pytest.raises(BladegenError, match=r"numbers of shape \(2, 3\)"):
+        DeviationMap(np.array([0.0, 1.0]), np.array([0.0, 0.5, 1.0]), np.zeros((3, 2)))
+    with pytest.raises(BladegenError, match="must rise within 0 to 1"):
+        DeviationMap.erosion(blade, start=0.9, end=0.5, width=0.1, depth=0.001)
+    far = surfaces.of_mesh(from_blade(blade, stations=12))
+    with pytest.raises(BladegenError, match="are frames and units the same"):
+        DeviationMap.measured(blade, far.scaled(0.5), spans=5)
+
+
+def test_check_writes_maps_of_a_scan(blade, tmp_path, foreign_here, monkeypatch):
+    from bladegen.fitting import deviations
+
+    monkeypatch.setattr(DeviationMap.measured.__func__, "__kwdefaults__", {"spans": 12})
+    assert deviations.SPANS > 12
+    scan = bg.export(blade, tmp_path / "scan.stl", stations=30)
+    bg.write(bg.read("nrel5mw"), tmp_path / "blade.yaml")
+    paths = [tmp_path / f"map.{suffix}" for suffix in ("csv", "vtp", "png")]
+    asked = [word for path in paths for word in ("--deviation", str(path))]
+    result = RUN.invoke(
+        commands.app,
+        ["check", str(scan), str(tmp_path / "blade.yaml"), *asked],
+    )
+    assert result.exit_code == 0, result.output
+    assert "deviation rest rms mm" in result.output
+    rows = np.loadtxt(paths[0], delimiter=",", skiprows=1)
+    assert rows.shape == (12 * 401, 9)
+    assert_allclose(rows[:, 6:].sum(axis=1), rows[:, 5], atol=1e-4)
+    assert all(path.stat().st_size > 1000 for path in paths)
+    result = RUN.invoke(commands.app, ["check", str(scan), "--deviation", str(paths[0])])
+    assert "name one as OTHER" in str(result.exception)
+    result = RUN.invoke(commands.app, ["check", str(scan), str(scan), "--deviation", str(paths[0])])
+    assert "is no definition" in str(result.exception)

@@ -15,6 +15,7 @@ from bladegen.fitting import measuring
 from bladegen.fitting.clouds.coordinates import about
 from bladegen.fitting.clouds.reading import is_cloud, points_of
 from bladegen.fitting.clouds.surface import surface_of_points
+from bladegen.fitting.like import model_like, parameters_of
 from bladegen.fitting.placing.copies import one_of_copies
 from bladegen.fitting.placing.finding import found
 from bladegen.fitting.placing.pose import Pose
@@ -301,3 +302,27 @@ def test_a_pose_goes_both_ways():
     points = np.arange(12.0).reshape(4, 3)
     assert_allclose(pose.back(pose(points)), points, atol=1e-9)
     assert not pose.mirrored
+
+
+def test_parameters_of_a_variant_are_found_with_their_covariance(dtu):
+    """From points of the variant at spans and places that the model does not use."""
+    space = bg.ShapeSpace.bundled()
+    kinds = ("pga", "thickness", "chord", "twist")
+    model = bg.ParametricBlade(dtu, space, kinds, np.linspace(0.2, 0.95, 60))
+    truth = np.array([0.02, -0.01, 0.01, 0.005, 1.03, 1.02, 0.01])
+    variant = dtu.perturbed(
+        space, truth[:4], thickness=1.03, chord=1.02, twist=0.01, allow_odd=True
+    )
+    rng = np.random.default_rng(4)
+    places = np.sort(np.concatenate([rng.uniform(0.03, 0.45, 20), rng.uniform(0.55, 0.97, 20)]))
+    points = variant.sections(np.sort(rng.uniform(0.2, 0.95, 40)), places).reshape(-1, 3)
+    points = points + 1e-3 * rng.normal(size=points.shape)
+    found_ = parameters_of(points, model)
+    assert_allclose(found_.x, truth, atol=2e-3)
+    assert np.all(np.abs(found_.x - truth) < 8.0 * found_.deviations + 5e-4)
+    assert found_.rms < 2e-3
+    assert [row["name"] for row in found_.rows()] == list(model.names)
+    with pytest.raises(BladegenError, match="at least 70 are needed for 7 parameters"):
+        parameters_of(points[:20], model)
+    with pytest.raises(BladegenError, match="must be a BladeDefinition"):
+        model_like("iea15mw")

@@ -68,6 +68,14 @@ def fit(
     name: Annotated[str | None, typer.Option(help="The blade's name; the file's if not given.")] = (
         None
     ),
+    like: Annotated[
+        str | None,
+        typer.Option(
+            metavar="BLADE",
+            help="A blade whose parameters are fitted besides: shape at three spans, thickness, "
+            "chord, twist, with standard deviations.",
+        ),
+    ] = None,
     screenshot: Annotated[
         Path | None,
         typer.Option(
@@ -83,6 +91,7 @@ def fit(
     """
     from bladegen.exports.definitions import write
     from bladegen.fitting.fit import fit as fitted_to
+    from bladegen.formats.reading import read
     from bladegen.formats.writing import format_of
     from bladegen.support.files import replacing
 
@@ -91,6 +100,7 @@ def fit(
     with progress_bar() as progress:
         fitted = fitted_to(
             source,
+            like=None if like is None else read(like),
             tolerance=allowed,
             unit=unit and unit.value,
             frame=frame.value,
@@ -112,6 +122,12 @@ def fit(
         print_findings([str(finding) for finding in (*fitted.findings, *findings)])
         print_figures(f"{source} fitted", fitted.figures)
         _print_bands(fitted)
+        if fitted.parameters is not None:
+            rows = [
+                [row["name"], f"{row['value']:.5g}", f"{row['standard_deviation']:.2g}"]
+                for row in fitted.parameters.rows()
+            ]
+            print_table(["parameter", "value", "standard deviation"], rows, title=f"like {like}")
         for path in (target, told, *([screenshot] if screenshot else [])):
             typer.echo(f"wrote {path}")
     fitted.require_held()

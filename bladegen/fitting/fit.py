@@ -13,12 +13,14 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven
+from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.definition.distribution import pchip
 from bladegen.definition.reference_axis import ReferenceAxis
 from bladegen.errors import BladegenError, Finding, GeometryError
 from bladegen.fitting.clouds.reading import is_cloud, points_of
 from bladegen.fitting.clouds.surface import surface_of_points
 from bladegen.fitting.fitted import Fitted
+from bladegen.fitting.like import model_like, parameters_of
 from bladegen.fitting.measuring import Cutting, Sections, axis_of, measured, settled
 from bladegen.fitting.placing.copies import one_of_copies
 from bladegen.fitting.placing.finding import FRAMES, UNITS, found
@@ -28,6 +30,7 @@ from bladegen.fitting.stations import definition_of, fewest
 from bladegen.fitting.tips import length_along
 from bladegen.measures import distances, surfaces
 from bladegen.measures.sides import Side, surface_of
+from bladegen.parametric.model import ParametricBlade
 from bladegen.support.arguments import amount, numbers, one_of, whole
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
@@ -60,6 +63,7 @@ SAMPLES = 6_000  # points of the source that are held against the blade
 def fit(
     source: str | Path | Side | TriangleMesh | Array,
     *,
+    like: Blade | BladeDefinition | ParametricBlade | None = None,
     tolerance: float = TOLERANCE,
     unit: str | None = None,
     frame: str = "auto",
@@ -74,6 +78,8 @@ def fit(
     source : str, Path, TriangleMesh or (m, 3) array
         A CAD file (STEP, IGES, BREP), a mesh file (STL, PLY, OBJ, GLB, ...) or points (.xyz, .csv,
         .ply without triangles); triangles or points [m].
+    like : Blade, BladeDefinition or ParametricBlade, optional
+        A blade whose parameters are fitted besides, with their covariance: `Fitted.parameters`.
     tolerance : float
         Distance to the surface that 99 % of its points shall keep [m].
     unit : str, optional
@@ -106,6 +112,7 @@ def fit(
     one_of(frame, FRAMES, "frame", BladegenError)
     if unit is not None:
         one_of(unit, UNITS, "unit", BladegenError)
+    model = None if like is None else model_like(like)
     progress("reading")
     side, cloud, noise = _side(source)
     if unit is not None and side.surface.patches:  # CAD files are read as millimetres
@@ -144,6 +151,7 @@ def fit(
         tolerance,
         pose.scale * noise,
         tuple(findings),
+        None if model is None else parameters_of(points, model),
     )
 
 

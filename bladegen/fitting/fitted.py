@@ -15,6 +15,7 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import BladegenError, Finding
+from bladegen.fitting.like import Parameters
 from bladegen.fitting.measuring import LANDMARKS, Sections
 from bladegen.fitting.placing.pose import Pose
 from bladegen.measures.surfaces import Surface
@@ -81,6 +82,8 @@ class Fitted:
         Standard deviation of the source's points about a smooth surface [m]; 0 of surfaces.
     findings : tuple of Finding
         How it was read, and what looks odd.
+    parameters : Parameters, optional
+        Those of the blade that it was held to be like.
     """
 
     definition: BladeDefinition
@@ -93,6 +96,7 @@ class Fitted:
     tolerance: float
     noise: float = 0.0
     findings: tuple[Finding, ...] = ()
+    parameters: Parameters | None = None
 
     def __repr__(self) -> str:
         figures = self.figures
@@ -198,6 +202,8 @@ class Fitted:
 
     def report(self) -> dict[str, Any]:
         """Return all that was found, as JSON holds it."""
+        like = self.parameters
+        known = {} if like is None else {"like": like.model.blade.name, "parameters": like.rows()}
         return {
             "blade": self.definition.name,
             "source": self.definition.source,
@@ -208,6 +214,7 @@ class Fitted:
             "origin_m": self.pose.origin.tolist(),
             "mirrored": self.pose.mirrored,
             "findings": [str(finding) for finding in self.findings],
+            **known,
             "bands": self.bands(),
             "airfoils": [vars(place) for place in self.places()],
         }

@@ -82,12 +82,15 @@ find_browser() {
 
 python="$(find_python)"
 install_libraries "$python"
-# the tests look at the studio in a real browser
+# the tests look at the studio in a real browser, and run shell models
 case "$extra" in
     test | dev)
         find_browser >/dev/null ||
             install_packages chromium "Chromium, which the tests of the studio need"
         find_browser >/dev/null || fail "no Chromium after its install"
+        command -v ccx >/dev/null ||
+            install_packages calculix-ccx "CalculiX, which runs the shell models of the tests"
+        command -v ccx >/dev/null || fail "no CalculiX after its install"
         ;;
 esac
 # pip comes last: without it an earlier run was broken off

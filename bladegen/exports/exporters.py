@@ -43,6 +43,8 @@ def export(
     largest: int | None = None,
     spans: "Array | None" = None,
     spacing: grid.Spacing | None = None,
+    element: float = Options.element,
+    laminates: bool = Options.laminates,
     polars: str | None = None,
     reynolds: float | None = None,
     command: str = "",
@@ -84,6 +86,10 @@ def export(
         Solids: span fractions of sections to begin with, such as those of a blade that is alike.
     spacing : bladegen.surface.grids.grid.Spacing, optional
         Grids: how many points, and cell sizes as fractions of a side and of the axis.
+    element : float
+        Shell models: size of the elements [m], 0.02 to 20.
+    laminates : bool
+        Shell models: composite sections, layer by layer, which Abaqus takes and CalculiX does not.
     polars : str, optional
         Definitions: where polars are from, as for `bladegen.write`.
     reynolds : float, optional
@@ -125,6 +131,8 @@ def export(
         "largest": largest,
         "spans": spans,
         "spacing": grid.Spacing() if spacing is None else spacing,
+        "element": element,
+        "laminates": laminates,
         "polars": polars,
         "reynolds": reynolds,
         "command": command,

@@ -217,6 +217,7 @@ _PUT: dict[str, Put] = {
     ".brep": _brep,
     ".stl": _stl,
     **dict.fromkeys((".obj", ".yaml", ".yml"), commented("#")),
+    ".inp": commented("**"),
     "": commented("//"),  # of OpenFOAM, whose files have no suffix
     ".csv": named_columns,
     ".htc": commented(";"),

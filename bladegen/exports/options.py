@@ -29,6 +29,7 @@ class Kind(StrEnum):
     curves = "curves"
     triangles = "triangles"
     grid = "grid"
+    shell = "shell"
     definition = "definition"
     table = "table"
     picture = "picture"
@@ -67,6 +68,10 @@ class Options:
         Solids: sections to begin with, such as those of a blade that is alike.
     spacing : Spacing
         Grids: how many points, and cell sizes where it matters.
+    element : float
+        Shell models: size of the elements [m].
+    laminates : bool
+        Shell models: composite sections, layer by layer, which CalculiX does not take.
     polars, reynolds : optional
         Definitions: where polars are from, as for `formats.writing.write`.
     """
@@ -84,6 +89,8 @@ class Options:
     largest: int | None = None
     spans: Array | None = None
     spacing: grid.Spacing = field(default_factory=grid.Spacing)
+    element: float = 1.0
+    laminates: bool = False
     polars: str | None = None
     reynolds: float | None = None
     command: str = ""
@@ -133,6 +140,8 @@ class Options:
             found["tip"] = word(self.tip)
         if kind in (Kind.triangles, Kind.grid):
             found["unit"] = _FIXED_UNITS.get(suffix, self.unit)
+        if kind is Kind.shell:
+            found |= {"element": word(self.element), "laminates": word(self.laminates)}
         if kind is Kind.definition:
             given = {"polars": self.polars, "reynolds": self.reynolds}
             found |= {key: word(value) for key, value in given.items() if value is not None}

@@ -7,10 +7,11 @@ from pathlib import Path
 
 from bladegen.blade.blade import Blade
 from bladegen.cad import solids
-from bladegen.errors import Finding
+from bladegen.errors import ExportError, Finding
 from bladegen.exports import marks
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.provenance import Provenance, made_from
+from bladegen.layup.shell.model import ShellModel, shell_model
 from bladegen.surface import mesh
 from bladegen.surface.grids import grid
 
@@ -50,6 +51,20 @@ class Products:
         """The structured grid."""
         self.progress("making the grid")
         return grid.from_blade(self.blade, self.options.spacing, self.options.tip)
+
+    @cached_property
+    def shell(self) -> ShellModel:
+        """The shell model of skin and webs."""
+        layup = self.blade.layup
+        if layup is None:
+            raise ExportError(
+                f"{self.blade.name}: its definition has no webs and layers, of which a shell model "
+                "is made; iea15mw and nrel5mw have some, and turbine files of windIO"
+            )
+        self.progress("making the shell")
+        model = shell_model(layup, self.options.element)
+        self.remarks.extend(model.findings)
+        return model
 
     def made_from(self, kind: Kind, suffix: str) -> Provenance:
         """Return what a file of a kind and suffix is made from."""

@@ -19,6 +19,7 @@ from bladegen.exports.definitions import marking
 from bladegen.exports.options import UNITS, Kind
 from bladegen.exports.products import Products
 from bladegen.formats import writing
+from bladegen.layup.shell.inp import inp_lines
 from bladegen.support.arguments import suggestion
 from bladegen.support.plugins import Offered, guarded, offered
 from bladegen.surface import gltf, mesh_files
@@ -130,6 +131,11 @@ def _write_vtu(products: Products, path: Path) -> None:
     grid_files.write_vtu(products.grid, path, scale=UNITS[products.options.unit])
 
 
+def _write_inp(products: Products, path: Path) -> None:
+    lines = inp_lines(products.shell, laminates=products.options.laminates)
+    path.write_text("".join(f"{line}\n" for line in lines), encoding="ascii")
+
+
 def _write_csv(products: Products, path: Path) -> None:
     blade = products.blade
     eta = blade.stations(products.options.stations)
@@ -192,6 +198,9 @@ FORMATS = {
         Kind.grid, "CGNS structured grid with connectivity and families, m", _write_cgns
     ),
     ".vtu": Format(Kind.grid, "VTK unstructured quadrilaterals of the grid, m (or mm)", _write_vtu),
+    ".inp": Format(
+        Kind.shell, "shell model of skin and webs for CalculiX and Abaqus, m, N, kg", _write_inp
+    ),
     ".sections.csv": Format(
         Kind.table, "sections as a table: eta, landmark, u, x, y, z, m", _write_csv
     ),

@@ -83,13 +83,15 @@ Airfoils = Annotated[
         "file if not given.",
     ),
 ]
+Element = Annotated[str, typer.Option(metavar="LENGTH", help="Of a shell's elements (inp).")]
+Laminates = Annotated[bool, typer.Option("--laminates", help="Shells layer by layer (Abaqus).")]
 Formats = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
         help="CAD: step iges brep curves.step; triangles: stl regions.stl glb ply obj 3mf vtp; "
-        "grids: p3d fmt cgns vtu; definitions: yaml (windIO 2) dat (OpenFAST) htc (HAWC2) csv "
-        "xlsx; sections.csv; png. Several with commas, or repeated.",
+        "grids: p3d fmt cgns vtu; shells: inp; definitions: yaml (windIO 2) dat (OpenFAST) htc "
+        "(HAWC2) csv xlsx; sections.csv; png. Several with commas, or repeated.",
     ),
 ]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]
@@ -198,9 +200,7 @@ class Producing:
         str | None,
         typer.Option(metavar="LENGTH", help="Largest deviation of the solid; 0.3mm if not given."),
     ] = None
-    light: Annotated[
-        bool, typer.Option("--light", help="Solids within 1 mm in less than 2 MB.")
-    ] = False
+    light: Annotated[bool, typer.Option("--light", help="Solids within 1 mm, under 2 MB.")] = False
     split: Annotated[
         bool,
         typer.Option(
@@ -208,10 +208,9 @@ class Producing:
         ),
     ] = False
     stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300
-    tip: Annotated[
-        TipKind,
-        typer.Option(case_sensitive=False, help="A flat or a rounded tip."),
-    ] = TipKind.flat
+    tip: Annotated[TipKind, typer.Option(case_sensitive=False, help="A flat or a rounded tip.")] = (
+        TipKind.flat
+    )
     unit: Annotated[
         Unit,
         typer.Option(
@@ -219,8 +218,7 @@ class Producing:
         ),
     ] = Unit.m
     step: Annotated[
-        StepSchema,
-        typer.Option(case_sensitive=False, help="Schema of STEP files."),
+        StepSchema, typer.Option(case_sensitive=False, help="Schema of STEP files.")
     ] = StepSchema.ap242
     author: Annotated[
         str, typer.Option(metavar="NAME", help="Whom STEP and IGES files name; nobody by default.")
@@ -241,6 +239,8 @@ class Producing:
     te_spacing: SideSpacing = 1e-3
     tip_spacing: SpanSpacing = 2e-4
     root_spacing: SpanSpacing = 0.01
+    element: Element = "1m"
+    laminates: Laminates = False
     polars: Polars = None
     reynolds: Reynolds = None
 
@@ -267,6 +267,8 @@ class Producing:
             stations=self.stations,
             tip=TIPS[self.tip],
             unit=self.unit,
+            element=metres(self.element, "element", example="1m"),
+            laminates=self.laminates,
             polars=self.polars,
             reynolds=self.reynolds,
             spacing=Spacing(

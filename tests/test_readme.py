@@ -56,7 +56,7 @@ def test_what_is_typed_makes_one_consistent_folder(tmp_path):
     for block in blocks("python"):
         subprocess.run([sys.executable, "-c", block], cwd=tmp_path, env=environment, check=True)
     made = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()}
-    assert {"out/iea15mw.step", "out/variant.step", "cfd/iea15mw.cgns", "variant.dat"} <= made
+    assert {"out/iea15mw.step", "out/variant.step", "cfd/my_turbine.cgns", "variant.dat"} <= made
     assert {"apart.png", "blade.png", "iea15.step", "iea15.stl", "new.yaml"} <= made
     # the files of one blade are of one blade
     volumes = [

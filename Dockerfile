@@ -2,7 +2,7 @@
 # polars and the studio as well (3.1 GB).
 #   docker build --target core -t bladegen:core .
 #   docker build -t bladegen .
-#   docker run --rm -v "$PWD:/work" bladegen build iea15mw -o out/
+#   docker run --rm -v "$PWD:/data" bladegen build iea15mw -o out/
 
 FROM debian:13-slim AS python
 RUN apt-get update \
@@ -22,7 +22,7 @@ COPY bladegen bladegen
 
 FROM python AS core
 RUN pip install --no-deps --requirement locks/core.txt && pip install --no-deps .
-WORKDIR /work
+WORKDIR /data
 ENTRYPOINT ["bladegen"]
 CMD ["--help"]
 
@@ -32,9 +32,9 @@ RUN apt-get update \
         libegl1 libegl-mesa0 libxrender1 \
     && rm -rf /var/lib/apt/lists/* \
     && pip install --constraint locks/run.txt ".[aero,dask,studio,video]"
-# compiled loops are kept here between runs of a container whose /work is a volume
-ENV NUMBA_CACHE_DIR=/work/.numba
-WORKDIR /work
+# compiled loops are kept here between runs of a container whose /data is a volume
+ENV NUMBA_CACHE_DIR=/data/.numba
+WORKDIR /data
 EXPOSE 8080
 ENTRYPOINT ["bladegen"]
 CMD ["--help"]

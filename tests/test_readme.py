@@ -12,7 +12,6 @@ import bladegen as bg
 from bladegen.measures import checks
 
 ROOT = Path(bg.__file__).parent.parent
-RUN = "import sys; from bladegen.cli.commands import main; sys.argv[0] = 'bladegen'; main()"
 USE = re.search(
     r"\n## Use\n(.*?)\n## ", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL
 )
@@ -45,7 +44,7 @@ def test_what_is_typed_makes_one_consistent_folder(tmp_path):
     environment = {**os.environ, "COLUMNS": "200"}
     for words in lines():
         done = subprocess.run(
-            [sys.executable, "-c", RUN, *words[1:]],
+            [sys.executable, "-m", *words],
             cwd=tmp_path,
             env=environment,
             capture_output=True,

@@ -5,14 +5,14 @@ coordinates are and whether they lie among the data.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from bladegen.errors import MissingLibraryError, SpaceError
 from bladegen.shapes.ellipsoids import smallest
-from bladegen.support.arrays import Array, Mask
+from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.values import brief
 
 __all__ = ["KINDS", "Density"]
@@ -111,7 +111,7 @@ class Mixture:
     def of(cls, data: Array, weights: Array, means: Array, covariances: Array) -> "Mixture":
         roots = np.linalg.cholesky(covariances).astype(np.float64)
         made = cls(weights, means, roots, -np.inf)
-        return cls(weights, means, made.roots, float(made.log_prob(data).min()))
+        return replace(made, least=float(made.log_prob(data).min()))
 
     @classmethod
     def normal(cls, data: Array) -> "Mixture":
@@ -133,8 +133,7 @@ class Mixture:
         return cls.of(data, best.weights_, best.means_, best.covariances_)
 
     def carried(self, unit: Array) -> Array:
-        ends = np.cumsum(self.weights)
-        of = np.minimum(np.searchsorted(ends, unit[:, -1], side="right"), len(ends) - 1)
+        of = _chosen(np.cumsum(self.weights), unit[:, -1])
         result: Array = self.means[of] + np.einsum(
             "mij,mj->mi", self.roots[of], _normal(unit[:, :-1])
         )
@@ -177,8 +176,7 @@ class Hull:
         return cls(cells, volumes, hull.equations)
 
     def carried(self, unit: Array) -> Array:
-        ends = np.cumsum(self.volumes) / self.volumes.sum()
-        of = np.minimum(np.searchsorted(ends, unit[:, -1], side="right"), len(ends) - 1)
+        of = _chosen(np.cumsum(self.volumes) / self.volumes.sum(), unit[:, -1])
         cuts = np.sort(unit[:, :-1], axis=1)  # differences of sorted numbers: uniform weights
         weights = np.diff(cuts, axis=1, prepend=0.0, append=1.0)
         result: Array = np.einsum("mi,mij->mj", weights, self.simplices[of])
@@ -212,6 +210,11 @@ KINDS: dict[str, Callable[[Array], Density]] = {
     "mixture": Mixture.learned,
     "hull": Hull.of,
 }
+
+
+def _chosen(ends: Array, unit: Array) -> Indices:
+    """Return which parts numbers uniform in 0 to 1 fall on, of parts that end at `ends` (s,)."""
+    return np.minimum(np.searchsorted(ends, unit, side="right"), len(ends) - 1)
 
 
 def _normal(unit: Array) -> Array:

@@ -123,7 +123,7 @@ def thickest(s: Section, along: Numbers, work: Array) -> Numbers:
 
     The places u on the suction and the pressure side are returned besides.
 
-    Newton's method climbs from the thickest pair of landmarks, and from those beside which a peak
+    Newton's method climbs from the landmark where it is largest, and from those beside which a peak
     may be as high (`cubics.rivals`).
     """
     u, points = s.u, s.points

@@ -203,7 +203,13 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
             ["grid", f"{grid['cells']} cells in {grid['blocks']} blocks, which {matches}"],
             ["grid's worst skewness", f"{grid['worst_skewness']:.2f} of 1"],
             ["grid's folded cells", str(grid["folded_cells"])],
+            ["grid's smallest scaled Jacobian", f"{grid['smallest_scaled_jacobian']:.2f} of 1"],
             ["grid's largest stretching", f"{grid['largest_stretching']:.2f} from cell to cell"],
+            [
+                "grid's largest jump",
+                f"{grid['largest_jump']:.3g} across blocks' edges, "
+                f"median {grid['median_jump']:.3g}",
+            ],
             ["grid's smallest cell", f"{grid['smallest_cell_m2'] * 1e6:.3g} mm2"],
         ]
     rows.append(["time", f"{sum(report['seconds'].values()):.1f} s"])

@@ -1,18 +1,29 @@
 """How good a structured grid's cells are: sizes, skewness, stretching, and whether blocks match.
 
 Skewness is by angles, 0 for a rectangle and 1 for a cell that has collapsed: the largest of
-(angle - 90) / 90 and (90 - angle) / 90 degrees over its corners.  Stretching is how many times
-as long one cell is as its neighbour along i or j.  Metres.
+(angle - 90) / 90 and (90 - angle) / 90 degrees over its corners.  The scaled Jacobian is the
+smallest sine of a corner's angle, 1 for a rectangle, negative where a cell is folded.  Stretching
+is how many times as long one cell is as its neighbour along i or j in the same block; what cells of
+two blocks differ by is in `joints`.  Metres.
 """
 
 from typing import Any
 
 import numpy as np
 
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Mask
 from bladegen.surface.grids.grid import Block, Grid
+from bladegen.surface.grids.joints import jump_figures
 
-__all__ = ["areas", "corner_angles", "grid_figures", "skewness", "stretching"]
+__all__ = [
+    "areas",
+    "collapsed",
+    "corner_angles",
+    "grid_figures",
+    "scaled_jacobian",
+    "skewness",
+    "stretching",
+]
 
 
 def corner_angles(points: Array) -> Array:
@@ -39,6 +50,19 @@ def skewness(points: Array) -> Array:
     return worst
 
 
+def collapsed(points: Array) -> Mask:
+    """Tell which cells (ni - 1, nj - 1) are triangles: two of their corners are one point."""
+    corners = _corners(points)
+    alike: Mask = np.any(np.all(np.roll(corners, -1, axis=2) == corners, axis=-1), axis=-1)
+    return alike
+
+
+def scaled_jacobian(points: Array) -> Array:
+    """Return the cells' scaled Jacobians (ni - 1, nj - 1), 0 for triangles."""
+    least: Array = np.sin(corner_angles(points)).min(axis=-1)
+    return least
+
+
 def areas(points: Array) -> Array:
     """Return the cells' areas (ni - 1, nj - 1) [m2]."""
     corners = _corners(points)
@@ -59,7 +83,11 @@ def stretching(points: Array) -> float:
 
 
 def grid_figures(grid: Grid) -> dict[str, Any]:
-    """Measure a grid: its size, cells, stretching, and how well its blocks match."""
+    """Measure a grid: its size, its cells, and how well its blocks match.
+
+    Scaled Jacobians and corners' angles are those of cells that are no triangles; these are
+    counted.
+    """
     blocks = {block.name: _block_figures(block) for block in grid.blocks}
     leading, trailing = _edge_cells(grid)
     gaps = [np.abs(own - other).max() for own, other in map(grid.along, grid.interfaces)]
@@ -69,8 +97,15 @@ def grid_figures(grid: Grid) -> dict[str, Any]:
         "cells": sum(figures["cells"] for figures in blocks.values()),
         "smallest_cell_m2": min(figures["smallest_cell_m2"] for figures in blocks.values()),
         "folded_cells": sum(figures["folded_cells"] for figures in blocks.values()),
+        "collapsed_cells": sum(figures["collapsed_cells"] for figures in blocks.values()),
         "worst_skewness": max(figures["worst_skewness"] for figures in blocks.values()),
+        "smallest_scaled_jacobian": min(f["smallest_scaled_jacobian"] for f in blocks.values()),
+        "corner_angles_deg": [
+            min(figures["corner_angles_deg"][0] for figures in blocks.values()),
+            max(figures["corner_angles_deg"][1] for figures in blocks.values()),
+        ],
         "largest_stretching": max(figures["largest_stretching"] for figures in blocks.values()),
+        **jump_figures(grid),
         "leading_edge_cell_of_side": leading,
         "trailing_edge_cell_of_side": trailing,
         "tip_cell_m": _range([_tip_cells(grid)]),
@@ -82,13 +117,17 @@ def grid_figures(grid: Grid) -> dict[str, Any]:
 
 def _block_figures(block: Block) -> dict[str, Any]:
     ni, nj, _ = block.points.shape
-    skewed = skewness(block.points)
+    skewed, triangles = skewness(block.points), collapsed(block.points)
+    angles = np.degrees(corner_angles(block.points)[~triangles]) % 360.0
     return {
         "points": [ni, nj],
         "cells": (ni - 1) * (nj - 1),
         "smallest_cell_m2": float(areas(block.points).min()),
         "folded_cells": int(np.count_nonzero(skewed > 1.0)),
+        "collapsed_cells": int(np.count_nonzero(triangles)),
         "worst_skewness": float(skewed.max()),
+        "smallest_scaled_jacobian": float(scaled_jacobian(block.points)[~triangles].min()),
+        "corner_angles_deg": _range([angles]),
         "largest_stretching": stretching(block.points),
     }
 

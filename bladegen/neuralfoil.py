@@ -10,11 +10,11 @@ The extra `aero` installs both.  Sections thicker than 40 % are none of NeuralFo
 import warnings
 from dataclasses import dataclass
 from functools import cache
-from math import comb
 from typing import Any
 
 import numpy as np
 
+from bladegen.aero.kulfan import KULFAN, WEIGHTS, in_chords, kulfan
 from bladegen.errors import BladegenError, MissingLibraryError
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array
@@ -22,8 +22,6 @@ from bladegen.support.values import brief
 
 __all__ = ["Coefficients", "coefficients"]
 
-WEIGHTS = 8  # of Kulfan's parameters a side, as the networks take them
-KULFAN = 2 * WEIGHTS + 2
 NAMES = ("CL", "CD", "CM")
 
 
@@ -77,19 +75,17 @@ def coefficients(points: Any, alpha: Any, reynolds: Any, *, size: str = "xlarge"
             f"points: got shape {sections.shape}, must be (..., n, 2), n >= {KULFAN}"
         )
     lead, n = sections.shape[:-2], sections.shape[-2]
-    z = (sections[..., 0] + 1j * sections[..., 1]).reshape(-1, n)
     angles, numbers_ = (
         np.broadcast_to(numbers(value, name, BladegenError), lead).ravel()
         for value, name in ((alpha, "alpha"), (reynolds, "reynolds"))
     )
     middle = n // 2
-    nose, chord = z[:, middle, None], 0.5 * (z[:, :1] + z[:, -1:]) - z[:, middle, None]
-    flat = (z - nose) / chord
-    kulfan, back = _kulfan(flat.real, flat.imag)
-    values, slopes = _network(size)(kulfan, np.degrees(angles), numbers_)
+    flat, chord = in_chords(sections.reshape(-1, n, 2))
+    weights, back = kulfan(flat.real, flat.imag)
+    values, slopes = _network(size)(weights, np.degrees(angles), numbers_)
     in_x, in_y = back(slopes[..., :KULFAN])
     # flat = (z - nose) / chord, a complex function: its derivative's conjugate takes gradients back
-    turned = (in_x + 1j * in_y) / chord.conj()[:, None]
+    turned = (in_x + 1j * in_y) / chord.conj()[:, None, None]
     in_chord = -(turned * flat.conj()[:, None]).sum(axis=-1)
     in_nose = -turned.sum(axis=-1) - in_chord
     turned[..., middle] += in_nose
@@ -101,60 +97,6 @@ def coefficients(points: Any, alpha: Any, reynolds: Any, *, size: str = "xlarge"
         np.degrees(slopes[..., KULFAN]).reshape(*lead, 3),
         slopes[..., KULFAN + 1].reshape(*lead, 3),
     )
-
-
-def _kulfan(x: Array, y: Array) -> tuple[Array, Any]:
-    """Fit Kulfan's parameters (b, 18) to sections in chords, leading edge in the middle.
-
-    Upper and lower weights, the weight of the leading edge, the edge's thickness, which is not
-    negative: the order in which NeuralFoil takes them.  The second result takes gradients
-    (b, q, 18) in parameters back to x and y (b, q, n).
-    """
-    n, middle = x.shape[-1], x.shape[-1] // 2
-    upper = np.arange(n) < middle
-    # the nose is 0, 0 whatever the parameters are; the others lie within a chord of the edge
-    x = np.where(np.arange(n) == middle, 0.5, np.maximum(x, 1e-12))
-    kept = np.arange(n) != middle
-    basis, slopes = _basis(x)
-    nose = x * np.maximum(1.0 - x, 0.0) ** (WEIGHTS + 0.5)
-    nose_slope = np.maximum(1.0 - x, 0.0) ** (WEIGHTS - 0.5) * (1.0 - (WEIGHTS + 1.5) * x)
-    side = np.where(upper, 0.5, -0.5)
-
-    def rows(basis: Array, nose: Array, edge: Array) -> Array:
-        halves = basis * upper[:, None], basis * ~upper[:, None]
-        made = np.concatenate([*halves, nose[..., None], edge[..., None]], axis=-1)
-        return np.asarray(made * kept[:, None])
-
-    matrix = rows(basis, nose, side * x)
-    slope = rows(slopes, nose_slope, np.broadcast_to(side, x.shape))
-    inverse = np.linalg.pinv(matrix)
-    sharp = np.einsum("bn,bn->b", inverse[:, -1], y) < 0.0
-    matrix[sharp, :, -1], slope[sharp, :, -1] = 0.0, 0.0
-    if sharp.any():
-        inverse[sharp] = np.linalg.pinv(matrix[sharp])
-    found = np.einsum("bmn,bn->bm", inverse, y)
-    missed = (y - np.einsum("bnm,bm->bn", matrix, found)) * kept
-
-    def back(gradient: Array) -> tuple[Array, Array]:
-        in_y = gradient @ inverse
-        moved = in_y @ inverse.mT
-        through = np.einsum("bnm,bm->bn", slope, found)[:, None]
-        in_x = missed[:, None] * (moved @ slope.mT) - in_y * through
-        return in_x, in_y
-
-    return found, back
-
-
-def _basis(x: Array) -> tuple[Array, Array]:
-    """Return the terms (b, n, 8) of one side, class exponents 1/2 and 1, and their slopes."""
-    k = np.arange(WEIGHTS)
-    choose = np.array([float(comb(WEIGHTS - 1, int(j))) for j in k])
-    x = x[..., None]
-    # x^(k + 1/2) (1 - x)^(8 - k): at blunt edges x passes 1 by a little, where whole powers hold
-    low, high = x ** (k + 0.5), (1.0 - x) ** (WEIGHTS - k)
-    low_slope = (k + 0.5) * x ** (k - 0.5)
-    high_slope = -(WEIGHTS - k) * (1.0 - x) ** (WEIGHTS - k - 1)
-    return choose * low * high, choose * (low_slope * high + low * high_slope)
 
 
 @cache

@@ -15,11 +15,13 @@ pressure of a plate, which goes from a quarter to three quarters of the chord; i
 the moment at stall by a difference that fades out to 90 degrees.
 """
 
+from typing import Any
+
 import numpy as np
 
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Indices
 
-__all__ = ["ASPECT_RATIO", "STALL", "extended", "normal_moment"]
+__all__ = ["ASPECT_RATIO", "STALL", "around", "extended", "normal_moment", "stalls"]
 
 ASPECT_RATIO = 10.0  # usual for blades; gives the drag 1.29 at 90 degrees
 REVERSED = 0.7  # of the lift, where the flow meets the trailing edge
@@ -60,6 +62,46 @@ def extended(
     return np.concatenate([-before[::-1], alpha, after]), joined[0], joined[1], joined[2]
 
 
+def around(
+    grid: Array, alpha: Array, cl: Array, cd: Array, *, aspect_ratio: float = ASPECT_RATIO
+) -> tuple[Array, Array]:
+    """Return lift and drag (b, k) of many polars at the same angles all around, as `extended`.
+
+    Parameters
+    ----------
+    grid : (k,) array
+        From -pi to pi [rad]; the angles `alpha` are a stretch of it.
+    alpha : (m,) array
+        Where the polars are known [rad]; what lies between the stalls of each is kept.
+    cl, cd : (b, m) arrays
+        Coefficients.
+    """
+    low, high = stalls(alpha, cl)
+    at = np.arange(len(alpha))
+    between = (at >= low) & (at <= high)
+    least = np.where(between, cd, np.inf).min(axis=1, keepdims=True)
+    most = 1.11 + 0.018 * min(aspect_ratio, 50.0)
+    lift, drag = np.empty((2, len(cl), len(grid)))
+    for sign, stall in ((1.0, high), (-1.0, low)):
+        beyond = sign * grid >= 0.0
+        ends = sign * np.take_along_axis(cl, stall, 1), np.take_along_axis(cd, stall, 1)
+        there = sign * grid[beyond], sign * alpha[stall]
+        found = _stalled(*there, (*ends, np.zeros_like(ends[0])), most, least)
+        lift[:, beyond], drag[:, beyond] = sign * found[0], found[1]
+    start = int(np.argmin(np.abs(grid - alpha[0])))
+    part = slice(start, start + len(alpha))
+    lift[:, part] = np.where(between, cl, lift[:, part])
+    drag[:, part] = np.where(between, cd, drag[:, part])
+    return lift, drag
+
+
+def stalls(alpha: Array, cl: Array) -> tuple[Indices, Indices]:
+    """Return where polars (..., m) have least and most lift, beyond `STALL`: places (..., 1)."""
+    low = np.argmin(np.where(alpha < -STALL, cl, np.inf), axis=-1, keepdims=True)
+    high = np.argmax(np.where(alpha > STALL, cl, -np.inf), axis=-1, keepdims=True)
+    return low, high
+
+
 def normal_moment(alpha: Array, cl: Array, cd: Array) -> Array:
     """Return the moment of the normal force about the quarter chord, as on a plate."""
     arm = 0.5 * np.abs(alpha) / np.pi
@@ -75,7 +117,7 @@ def _angles(stall: float) -> Array:
 
 
 def _stalled(
-    alpha: Array, stall: float, at_stall: tuple[float, float, float], most: float, least: float
+    alpha: Array, stall: Any, at_stall: tuple[Any, Any, Any], most: float, least: Any
 ) -> Coefficients:
     """Return coefficients at positive angles beyond stall."""
     lift, drag, moment = at_stall
@@ -89,5 +131,5 @@ def _stalled(
     cl = np.where(alpha > 0.5 * np.pi, -REVERSED * left, 1.0) * cl
     cd = least + left * (cd - least)
     fade = np.clip((0.5 * np.pi - alpha) / (0.5 * np.pi - stall), 0.0, 1.0)
-    ends = np.array([stall]), np.array([lift]), np.array([drag])
+    ends = np.atleast_1d(stall), np.atleast_1d(lift), np.atleast_1d(drag)
     return cl, cd, normal_moment(alpha, cl, cd) + fade * (moment - normal_moment(*ends))

@@ -30,6 +30,7 @@ SUMMARIES = {
     "perturb": "Perturb a blade consistently and build it.",
     "family": "Make a family of perturbed blades: sections, a manifest, files and a contact sheet.",
     "check": "Measure a solid, a mesh or a blade definition, or the distance between two of them.",
+    "evaluate": "Evaluate a blade: power, thrust, root moment and annual energy.",
     "fit": "Fit a definition to a surface: axis, chord, twist, offsets, airfoils at few stations.",
     "convert": "Convert a blade between file formats, and say what the new one cannot hold.",
     "formats": "List the formats that are read and written, those of plug-ins too.",
@@ -77,6 +78,8 @@ def function_of(name: str) -> Any:  # noqa: PLR0912
             from bladegen.cli.family import family as run
         case "check":
             from bladegen.cli.check import check as run
+        case "evaluate":
+            from bladegen.cli.analysis.evaluate import evaluate as run
         case "fit":
             from bladegen.cli.fit import fit as run
         case "convert":

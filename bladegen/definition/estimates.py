@@ -17,7 +17,7 @@ import numpy as np
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.airfoils.polars import ESTIMATED, Polar
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.airfoils.viterna import STALL, extended
+from bladegen.airfoils.viterna import extended, stalls
 from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Station
 from bladegen.errors import BladegenError, Finding
 from bladegen.support.arrays import Array
@@ -29,6 +29,7 @@ __all__ = [
     "estimated",
     "force_centre",
     "reynolds_at",
+    "rounded",
     "with_polars",
 ]
 
@@ -160,7 +161,7 @@ def force_centre(thickness: float | Array) -> Array:
 
 def _estimated(points: Array, thickness: float, reynolds: float) -> Polar:
     """Return the estimated polar of landmarks as `_flat` returns them."""
-    mixed = _rounded(thickness)
+    mixed = float(rounded(thickness))
     thinned = points * [1.0, min(1.0, THICK / thickness)]
     alpha, cl, cd, cm, confidence = _neuralfoil(thinned, reynolds)
     alpha, cl, cd, cm = extended(alpha, cl, cd, cm)
@@ -179,9 +180,10 @@ def _estimated(points: Array, thickness: float, reynolds: float) -> Polar:
     return Polar(alpha, cl, cd, cm, reynolds, source=source)
 
 
-def _rounded(thickness: float) -> float:
-    """Return how much of a cylinder a section of a relative thickness is taken for, 0 to 1."""
-    return float(np.clip((thickness - THICK) / (1.0 - THICK), 0.0, 1.0))
+def rounded(thickness: float | Array) -> Array:
+    """Return how much of a cylinder sections of a relative thickness are taken for, 0 to 1."""
+    share: Array = np.clip((np.asarray(thickness) - THICK) / (1.0 - THICK), 0.0, 1.0)
+    return share
 
 
 def _flat(airfoil: Airfoil) -> tuple[Array, float]:
@@ -203,9 +205,8 @@ def _neuralfoil(points: Array, reynolds: float) -> tuple[Array, Array, Array, Ar
     found = neuralfoil.get_aero_from_coordinates(points, ANGLES, reynolds, model_size=MODEL)
     alpha = np.radians(ANGLES)
     cl = np.asarray(found["CL"], dtype=np.float64)
-    low = int(np.argmin(np.where(alpha < -STALL, cl, np.inf)))
-    high = int(np.argmax(np.where(alpha > STALL, cl, -np.inf)))
-    kept = slice(low, high + 1)
+    low, high = stalls(alpha, cl)
+    kept = slice(int(low[0]), int(high[0]) + 1)
     cd, cm = (np.asarray(found[key], dtype=np.float64) for key in ("CD", "CM"))
     confidence = float(np.min(found["analysis_confidence"][kept]))
     return alpha[kept], cl[kept], cd[kept], cm[kept], confidence

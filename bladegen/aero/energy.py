@@ -1,0 +1,112 @@
+"""Annual energy: a power curve met by winds of a Weibull distribution.
+
+The rotor turns at its optimum tip speed ratio up to its largest tip speed, with which it then goes
+on; above the rated power it is pitched to hold that.  Neither a least rotor speed nor losses of
+wakes and stops are counted.
+"""
+
+from dataclasses import dataclass, fields
+from math import gamma, pi
+
+import numpy as np
+
+from bladegen.definition.blade_definition import Rotor
+from bladegen.definition.estimates import TIP_SPEED
+from bladegen.errors import BladegenError
+from bladegen.support.arguments import amount
+from bladegen.support.arrays import Array
+
+__all__ = ["HOURS", "Conditions", "annual_energy", "weibull_shares"]
+
+HOURS = 8760.0  # of a year
+CLASSES = {"I": 10.0, "II": 8.5, "III": 7.5}  # m/s, yearly means of IEC 61400-1
+WIND_STEP = 0.25  # m/s, of power curves
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Under which a rotor works.
+
+    Parameters
+    ----------
+    tip_speed : float
+        The largest [m/s]; it gives the Reynolds numbers, too.
+    rated_power : float, optional
+        [W]; without it there is no annual energy.
+    mean_wind : float
+        Over a year, at the hub [m/s].
+    weibull_shape : float
+        2 is Rayleigh's distribution.
+    air_density : float
+        [kg/m3].
+    cut_in, cut_out : float
+        [m/s].
+    efficiency : float
+        Of drive train and generator.
+    """
+
+    tip_speed: float = TIP_SPEED
+    rated_power: float | None = None
+    mean_wind: float = 8.5
+    weibull_shape: float = 2.0
+    air_density: float = 1.225
+    cut_in: float = 3.0
+    cut_out: float = 25.0
+    efficiency: float = 1.0
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            value = getattr(self, entry.name)
+            if entry.name == "rated_power" and value is None:
+                continue
+            if not amount(value, entry.name, BladegenError) > 0.0:
+                raise BladegenError(f"{entry.name}: got {value:g}, must be positive")
+        if self.cut_out <= self.cut_in:
+            raise BladegenError(
+                f"cut_out: got {self.cut_out:g} m/s, must be above cut_in, {self.cut_in:g} m/s"
+            )
+        if self.efficiency > 1.0:
+            raise BladegenError(f"efficiency: got {self.efficiency:g}, allowed is up to 1")
+
+    @classmethod
+    def of(cls, rotor: Rotor, tip_radius: float, **given: float | None) -> "Conditions":
+        """Return the conditions that a file names, with what is given instead of them.
+
+        The tip speed is that of the rated rotor speed, else of the largest, else `TIP_SPEED`;
+        the mean wind that of the turbine's class (IEC 61400-1).
+        """
+        known = dict(rotor.facts)
+
+        def fact(*names: str) -> float | None:
+            found = (known[name] for name in names if isinstance(known.get(name), int | float))
+            return next((float(value) for value in found), None)
+
+        turns = fact("control.rated_rotor_speed", "control.max_rotor_speed")
+        wanted: dict[str, float | None] = {
+            "tip_speed": None if turns is None else turns * 2.0 * pi / 60.0 * tip_radius,
+            "rated_power": fact("assembly.rated_power", "control.rated_power"),
+            "mean_wind": CLASSES.get(str(known.get("assembly.turbine_class", ""))),
+            "cut_in": fact("assembly.cut_in_wind_speed"),
+            "cut_out": fact("assembly.cut_out_wind_speed"),
+        }
+        wanted |= {name: value for name, value in given.items() if value is not None}
+        return cls(**{name: value for name, value in wanted.items() if value is not None})
+
+    @property
+    def winds(self) -> Array:
+        """Wind speeds from cut-in to cut-out (m,), about `WIND_STEP` apart."""
+        count = max(2, round((self.cut_out - self.cut_in) / WIND_STEP) + 1)
+        return np.linspace(self.cut_in, self.cut_out, count)
+
+
+def weibull_shares(winds: Array, mean: float, shape: float) -> Array:
+    """Return the share of the time (m - 1,) between successive wind speeds (m,)."""
+    scale = mean / gamma(1.0 + 1.0 / shape)
+    shares: Array = -np.diff(np.exp(-((winds / scale) ** shape)))
+    return shares
+
+
+def annual_energy(winds: Array, power: Array, mean: float, shape: float) -> Array:
+    """Return the energy of a year (...) [J] of power curves (..., m) [W], straight in between."""
+    between = 0.5 * (power[..., 1:] + power[..., :-1])
+    return np.asarray(3600.0 * HOURS * (between @ weibull_shares(winds, mean, shape)))

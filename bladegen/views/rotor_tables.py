@@ -1,0 +1,125 @@
+"""What a rotor does, as figures by name and as rows of text: a blade beside its baseline."""
+
+from dataclasses import asdict
+
+import numpy as np
+
+from bladegen.aero.energy import HOURS
+from bladegen.aero.evaluation import Evaluation
+from bladegen.views.tables import digits
+
+__all__ = [
+    "conditions_figures",
+    "conditions_rows",
+    "curve_rows",
+    "figure_rows",
+    "rotor_curve",
+    "rotor_figures",
+]
+
+SHOWN = {  # how a figure is called, and how many decimals it has
+    "power_coefficient": ("largest power coefficient", 4),
+    "tip_speed_ratio": ("at tip speed ratio", 2),
+    "pitch_deg": ("at pitch, deg", 2),
+    "thrust_coefficient": ("thrust coefficient there", 4),
+    "root_moment_coefficient": ("root moment coefficient there", 4),
+    "rated_wind_m_s": ("rated wind speed, m/s", 2),
+    "root_moment_MNm": ("root moment there, MNm", 2),
+    "annual_energy_GWh": ("annual energy, GWh", 2),
+    "capacity_factor": ("capacity factor", 4),
+    "tip_radius_m": ("tip radius, m", 2),
+    "least_confidence": ("NeuralFoil's least confidence", 2),
+}
+WORKING = {  # field: name with unit, how it is called, factor to what is shown
+    "tip_speed": ("tip_speed_m_s", "largest tip speed, m/s", 1.0),
+    "rated_power": ("rated_power_W", "rated power, MW", 1e-6),
+    "efficiency": ("efficiency", "efficiency of the drive train", 1.0),
+    "mean_wind": ("mean_wind_m_s", "mean wind speed, m/s", 1.0),
+    "weibull_shape": ("weibull_shape", "Weibull shape", 1.0),
+    "cut_in": ("cut_in_m_s", "cut-in, m/s", 1.0),
+    "cut_out": ("cut_out_m_s", "cut-out, m/s", 1.0),
+    "air_density": ("air_density_kg_m3", "air density, kg/m3", 1.0),
+}
+JOULES = 3.6e12  # of a GWh
+LIFTING = 0.5  # of the chord: thicker sections are mostly cylinders
+
+
+def rotor_figures(found: Evaluation, row: int) -> dict[str, float | None]:
+    """Return the figures of a rotor, units in their names; None for what is not known."""
+    best, rated = found.performance, found.conditions.rated_power
+    power, thrust, moment = best.best[row]
+    energy = float(found.energy[row])
+    confidence = found.polars.least_confidence[row][found.elements.thickness[row] < LIFTING]
+    figures = {
+        "power_coefficient": power,
+        "tip_speed_ratio": best.ratio[row],
+        "pitch_deg": np.degrees(best.pitch[row]),
+        "thrust_coefficient": thrust,
+        "root_moment_coefficient": moment,
+        "rated_wind_m_s": found.rated_wind[row],
+        "root_moment_MNm": found.root_moment[row] / 1e6,
+        "annual_energy_GWh": energy / JOULES,
+        "capacity_factor": np.nan if rated is None else energy / (rated * 3600.0 * HOURS),
+        "tip_radius_m": found.elements.tip_radius[row],
+        "least_confidence": confidence.min() if confidence.size else np.nan,
+    }
+    return {name: float(v) if np.isfinite(v) else None for name, v in figures.items()}
+
+
+def rotor_curve(found: Evaluation, row: int) -> dict[str, list[float]]:
+    """Return coefficients over tip speed ratio at the optimum pitch."""
+    best = found.performance
+    return {
+        "tip_speed_ratio": best.ratios.tolist(),
+        "power_coefficient": best.power[row].tolist(),
+        "thrust_coefficient": best.thrust[row].tolist(),
+        "root_moment_coefficient": best.moment[row].tolist(),
+    }
+
+
+def conditions_figures(found: Evaluation) -> dict[str, float | None]:
+    """Return under which conditions rotors work, units in their names."""
+    values = asdict(found.conditions)
+    return {name: values[field] for field, (name, _, _) in WORKING.items()}
+
+
+def conditions_rows(found: Evaluation) -> list[list[str]]:
+    """Return a row a condition."""
+    values = asdict(found.conditions)
+    return [
+        [said, "not known" if values[field] is None else f"{factor * values[field]:.4g}"]
+        for field, (_, said, factor) in WORKING.items()
+    ]
+
+
+def figure_rows(found: Evaluation) -> list[list[str]]:
+    """Return a row a figure: its name, the baseline's, then the variant's and the change."""
+    columns = [rotor_figures(found, row) for row in range(len(found.energy))]
+    rows = []
+    for name, (said, decimals) in SHOWN.items():
+        values = [column[name] for column in columns]
+        row = [said, *("-" if v is None else digits(v, decimals) for v in values)]
+        if len(values) > 1:
+            row.append(_change(values[0], values[1], name))
+        rows.append(row)
+    return rows
+
+
+def _change(before: float | None, after: float | None, name: str) -> str:
+    """Return by how much a figure changed: in parts of itself, an angle in degrees."""
+    if before is None or after is None:
+        return ""
+    if name == "pitch_deg":
+        return f"{after - before:+.2f}"
+    return f"{100.0 * (after / before - 1.0):+.2f} %" if before else ""
+
+
+def curve_rows(found: Evaluation) -> list[list[str]]:
+    """Return a row a whole tip speed ratio: power and thrust coefficient of each rotor."""
+    best = found.performance
+    both = np.stack([best.power, best.thrust], axis=1).reshape(-1, len(best.ratios))
+    return [
+        [f"{ratio:g}", *(f"{value:.4f}" for value in both[:, i])]
+        for i, ratio in enumerate(best.ratios)
+        if ratio % 1.0 == 0.0
+    ]

@@ -41,3 +41,29 @@ def test_a_kink_in_the_planform_is_measured():
     # half a chord turns by d(twist)/dz out of its plane: the slope of a ruled surface
     reach = made.chord(place) * 0.8 / made.length
     assert 0.3 * reach < angle[2] < 1.5 * reach
+
+
+def bends(blade, eta):
+    """The largest second difference of a point over span fractions (k,), and where [m]."""
+    bent = np.linalg.norm(np.diff(blade.sections(eta), 2, axis=0), axis=-1).max(axis=1)
+    return bent.max(), eta[np.argmax(bent) + 1]
+
+
+VARIANTS = [
+    ("iea15mw", (0.06, -0.05, 0.03, 0.02), 1.05),  # stepped by 33 mm at eta 0.089
+    ("iea15mw", (0.06, -0.05, 0.03, 0.02), 1.0),
+    ("iea15mw", (-0.018, -0.0268, -0.0198, -0.0332), 1.05),
+    ("nrel5mw", (-0.0048, -0.0378, 0.0189, 0.0226), 1.05),
+    ("nrel5mw", (-0.0346, 0.0026, -0.0022, -0.0186), 1.0),
+]
+
+
+@pytest.mark.parametrize(("name", "t", "thickness"), VARIANTS)
+def test_variants_do_not_step_where_a_nose_hands_over_to_another(name, t, thickness):
+    """Seen from ever nearer, the place where points bend most is smooth: bends fall as squares."""
+    blade = bg.Blade.from_definition(bg.read(name))
+    variant = blade.perturbed(bg.ShapeSpace.bundled(), t, thickness=thickness)
+    coarse, at = bends(variant, np.linspace(0.03, 0.35, 641))
+    fine, _ = bends(variant, at + np.linspace(-0.001, 0.001, 65))  # 16 times as near
+    assert fine < coarse / 16.0
+    assert fine < 3e-4  # [m] in 3 mm to 4 mm of span

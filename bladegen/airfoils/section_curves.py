@@ -18,17 +18,15 @@ from bladegen.airfoils.resizing import LITTLE, stretching
 from bladegen.airfoils.slopes import SplineSlopes
 from bladegen.airfoils.thickest import Places, thickest, thickest_again
 from bladegen.curves.cubics import Cubics
-from bladegen.curves.roots import ITERATIONS, bracketed
+from bladegen.curves.roots import ITERATIONS
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, Mask, mapped
 from bladegen.support.values import brief
 
 __all__ = ["SectionCurves"]
 
-SETTLED = 1e-13  # change of a stretch that ends its iteration
-EVEN = 1e-13  # of a chord line's slope; differences that are rounding
-DOUBLED = 40  # times, at most, that a chord line's turn is until a leading edge lies behind it
-STEEPEST = 1.0  # turn of a chord line, as a slope; leading edges lie in front
+SETTLED = 1e-13  # of a relative thickness
+SLOWEST, FASTEST = 0.25, 4.0  # growth of a relative thickness with a stretch, both as logarithms
 NEAR = 20  # landmarks that moved, of which it is looked how much they did
 ROUNDING = 1e-15  # of a chord
 
@@ -191,68 +189,32 @@ class SectionCurves:
     def _round(self, relative_thickness: Array) -> tuple[Array, Array]:
         """Return the maps of `normalising` where leading edges may be means of many points.
 
-        The stretch moves them, so that a chord line through the edge is sought on which the
-        leading edge lies after the stretch normal to it: near the present one, from which its
-        turn grows until the leading edge lies behind it.
+        The stretch, normal to the sections' own chord lines, moves them, and the chord lines with
+        them.  Its amount is the one after which the sections have the relative thickness, measured
+        anew: Newton's method on logarithms, with slopes of the last two steps.  A section whose
+        chord line turns away before it is that thick gets its thickness normal to its own.
         """
-        edge, own = self.trailing_edge, self._along
-        across = own[:, ::-1] * (-1.0, 1.0)
-        stretches = relative_thickness * self.chord / self.thickness
-        count = len(own)
-        reaches = np.empty(count)
-
-        def excess(turn: Array, rows: Indices) -> Array:
-            """By how much leading edges lie beyond chord lines of slopes `turn` to the own."""
-            along = own[rows] + turn[:, None] * across[rows]
-            along /= np.hypot(along[:, :1], along[:, 1:])
-            some = self.take(rows)._stretched(along, relative_thickness[rows], stretches[rows])
-            stretches[rows], reaches[rows], beyond = some
-            return beyond
-
-        turn, end = np.zeros(count), np.zeros(count)
-        above = excess(turn, np.arange(count))
-        side, below = np.where(above < 0.0, -1.0, 1.0), np.zeros(count)
-        rows = np.flatnonzero(np.abs(above) > EVEN)
-        end[rows] = above[rows]
-        for _ in range(DOUBLED):
+        edge, normal = self.trailing_edge, self._along[:, ::-1] * (-1.0, 1.0)
+        start, reaches = relative_thickness * self.chord / self.thickness, self.chord.copy()
+        more, missing, steps = (np.zeros(len(edge)) for _ in range(3))  # logarithms
+        rows = np.arange(len(edge))
+        for _ in range(ITERATIONS):
+            stretches = start[rows] * np.exp(more[rows])
+            maps = stretching(edge[rows], normal[rows], stretches, np.ones(len(rows)))
+            some = SectionCurves(self.splines, mapped(self.points[rows], *maps))
+            reaches[rows] = some.chord
+            left = np.log(relative_thickness[rows] * some.chord / some.thickness)
+            rate = np.ones(len(rows))
+            np.divide(missing[rows] - left, steps[rows], out=rate, where=steps[rows] != 0.0)
+            missing[rows], steps[rows] = left, left / np.clip(rate, SLOWEST, FASTEST)
+            open_ = np.abs(left) > SETTLED
+            turned = rows[open_ & (rate < 0.0)]
+            more[turned], reaches[turned] = 0.0, self.chord[turned]
+            rows = rows[open_ & (rate >= 0.0)]
             if not rows.size:
                 break
-            end[rows] = np.clip(2.0 * end[rows], -STEEPEST, STEEPEST)
-            below[rows] = side[rows] * excess(end[rows], rows)
-            rows = rows[(below[rows] > 0.0) & (np.abs(end[rows]) < STEEPEST)]
-        place = bracketed(
-            lambda at, some: side[some] * excess(at * end[some], some), side * above, below, EVEN
-        )
-        turn = place * end
-        along = own + turn[:, None] * across
-        along /= np.hypot(along[:, :1], along[:, 1:])
-        return stretching(edge, along[:, ::-1] * (-1.0, 1.0), stretches, reaches)
-
-    def _stretched(
-        self, along: Array, relative_thickness: Array, stretch: Array
-    ) -> tuple[Array, Array, Array]:
-        """Stretch sections normal to lines (k, 2) to their edges, to a relative thickness.
-
-        Returns the stretches, of which `stretch` is a guess, the distances of the leading edges
-        then, and by how much their own lines' slope differs from that of these.
-        """
-        edge = self.trailing_edge
-        axes = np.stack([along, along[:, ::-1] * (-1.0, 1.0)], axis=-1)
-        turned = self.mapped(axes, -(edge[:, None] @ axes)[:, 0])
-        thickness = thickest(self.splines, self.planes, along).height
-        stretch, points = stretch.copy(), np.empty((len(stretch), 2))
-        factors, rows = np.ones((len(stretch), 2)), np.arange(len(stretch))
-        for _ in range(ITERATIONS):  # the leading edge moves with the stretch, to second order
-            factors[rows, 1] = stretch[rows]
-            some = turned.points[rows] * factors[rows, None]
-            points[rows] = SectionCurves(self.splines, some).leading_edge
-            reach = np.hypot(points[rows, 0], points[rows, 1])
-            stretch[rows] = relative_thickness[rows] * reach / thickness[rows]
-            rows = rows[np.abs(stretch[rows] - factors[rows, 1]) > SETTLED * stretch[rows]]
-            if not rows.size:
-                break
-        reach = np.hypot(points[:, 0], points[:, 1])
-        return stretch, reach, points[:, 1] / (factors[:, 1] * points[:, 0])
+            more[rows] += steps[rows]
+        return stretching(edge, normal, start * np.exp(more), reaches)
 
     @property
     def edge_width(self) -> Array:

@@ -9,7 +9,15 @@ from math import sqrt
 
 import numpy as np
 
-from bladegen.curves.plane_maps import Numbers, carried, carry, combine, motion_of, onto
+from bladegen.curves.plane_maps import (
+    Numbers,
+    carried,
+    carry,
+    combine,
+    distance,
+    motion_of,
+    onto,
+)
 from bladegen.parametric.section_slopes import LEAD_X, gradients, sized_slopes, turning
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
@@ -18,7 +26,7 @@ from bladegen.variants.sizes import sizing
 
 __all__ = ["linearised", "lines_slopes"]
 
-REVISION = 11  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 12  # of all that is compiled with these: with another text it is compiled anew
 TERMS = 20  # of the series of cos S and sin S / S; principal angles below 2 rad need 14
 
 
@@ -74,10 +82,9 @@ def linearised(
     for k in range(spans):
         for b in range(count):
             c = coefficients[k, b]
-            total, line = measured(u, values[k], slopes[k], c, target[k, b], rows, now, room)
             shape_slopes(t[k, b], gram[k], M[k], raw)
             change = changes[k, b]
-            sized_slopes(values[k], now, rows, line, total, raw, change)
+            line = sized(u, values[k], slopes[k], c, target[k, b], raw, rows, now, change, room)
             there = standing[k, b]
             motion = onto(line, there) if kept else motion_of(there)
             carried(now, motion, result[k, b])
@@ -90,26 +97,40 @@ def linearised(
 
 
 @compiled
-def measured(
+def sized(
     u: Array,
     values: Array,
     slopes: Array,
     c: Array,
     target: float,
+    raw: Array,
     rows: Array,
     now: Array,
+    change: Array,
     room: tuple[Array, ...],
-) -> tuple[Numbers, Numbers]:
-    """Bring a section to size; return the map that does it, and the chord line that comes out.
+) -> Numbers:
+    """Bring a section to size; return the chord line that comes out.
 
-    Filled are its `gradients` (4, F, 2) and its coefficients (F, 2).
+    Filled are its `gradients` (4, F, 2), its coefficients (F, 2), and their derivatives
+    (q + 1, F, 2) for those of the coefficients before, `raw` (q, F, 2), and in the thickness.
     """
     points, moved, work, spare = room
     combine(values, c, points)
-    total, _ = sizing(Section(u, slopes, c, points), values, target, now, moved, work)
+    section = Section(u, slopes, c, points)
+    total, _, along, turned = sizing(section, values, target, now, moved, work)
+    turns = np.zeros(len(raw) + 1 if turned else 0)
+    if turned and len(raw):
+        before = gradients(section, values, work, rows, spare)
+        line = along[0], along[1], distance(before[:2], before[2:])
+        for f in range(len(c)):
+            tx, ty = turning(rows, values, f, line)
+            for q in range(len(raw)):
+                turns[q] += tx * raw[q, f, 0] + ty * raw[q, f, 1]
     carry(points, total)
     carried(c, total, now)
-    return total, gradients(Section(u, slopes, now, points), values, work, rows, spare)
+    after: Numbers = gradients(Section(u, slopes, now, points), values, work, rows, spare)
+    sized_slopes(values, now, rows, after, (total, along), turns, raw, change)
+    return after
 
 
 @compiled
@@ -224,8 +245,7 @@ def lines_slopes(
     for k in range(sections):
         for b in range(count):
             c = coefficients[k, b]
-            total, line = measured(u, values[k], slopes[k], c, target[k, b], rows, now, room)
-            sized_slopes(values[k], now, rows, line, total, raw, change)
+            sized(u, values[k], slopes[k], c, target[k, b], raw, rows, now, change, room)
             for j in range(4):
                 result[k, b, j] = 0.0
             for f in range(features):

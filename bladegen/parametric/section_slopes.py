@@ -7,11 +7,13 @@ as far, the level above which they count follows from theirs (`fronts`).
 
 A map to size is ``s (1 + l n n')`` about the chord line, with n normal to it: a scale s, a lift l
 and a direction.  They are implicit functions of the raw section and of the relative thickness, by
-three conditions on the section Q that comes out,
+three conditions,
 
-    the chord line of Q turns as n does,   its reach stays 1,   its thickness is the one asked for,
+    n turns as the chord line of the raw section does,
 
-so their derivatives solve three linear equations, however the map was found.
+and of the section Q that comes out the reach stays 1, and the thickness is the one asked for.
+Their derivatives solve three linear equations, however the map was found.  Where the map keeps the
+chord line, that of Q turns as n does, and the raw section need not be measured.
 """
 
 from math import sqrt
@@ -171,7 +173,14 @@ def turning(rows: Array, values: Array, f: int, line: Numbers) -> Numbers:
 
 @compiled
 def sized_slopes(
-    values: Array, c: Array, rows: Array, line: Numbers, total: Numbers, raw: Array, slopes: Array
+    values: Array,
+    c: Array,
+    rows: Array,
+    line: Numbers,
+    sizes: tuple[Numbers, Numbers],
+    turns: Array,
+    raw: Array,
+    slopes: Array,
 ) -> None:
     """Fill the derivatives (q + 1, F, 2) of a sized section's coefficients.
 
@@ -183,15 +192,18 @@ def sized_slopes(
         The sized section's coefficients, and its `gradients`.
     line : (4,) numbers
         Its leading edge and trailing-edge midpoint.
-    total : (6,) numbers
-        The map that sized it.
+    sizes : (6,) and (2,) numbers
+        The map that sized it, and the direction of the chord line before.
+    turns : (q,) array, or of no length
+        Derivatives of that direction's angle; without them the chord line was kept.
     raw : (q, F, 2) array
         Derivatives of the coefficients before.
     slopes : (q + 1, F, 2) array
         Filled; the last is that in the relative thickness.
     """
     length = distance(line[:2], line[2:])
-    ax, ay = (line[2] - line[0]) / length, (line[3] - line[1]) / length
+    own = (line[2] - line[0]) / length, (line[3] - line[1]) / length, length
+    total, (ax, ay) = sizes
     a, b, d, e, kx, ky = total
     scale = ax * (a * ax + d * ay) + ay * (b * ax + e * ay)
     lifted = -ay * (-a * ay + d * ax) + ax * (-b * ay + e * ax)
@@ -203,7 +215,7 @@ def sized_slopes(
             slopes[q, f, 1] = raw[q, f, 0] * b + raw[q, f, 1] * e
     for f in range(len(c)):
         slopes[-1, f, 0] = slopes[-1, f, 1] = 0.0
-    shares = solved(values, c, rows, (ax, ay, length), moves, slopes)
+    shares = solved(values, c, rows, own, turns, moves, slopes)
     # the map's shift is normal to the line: -lift / (1 + lift) times the carried edge's height
     above = -ay * kx + ax * ky
     ahead = ax * (line[2] - kx) + ay * (line[3] - ky)
@@ -250,18 +262,20 @@ def moves_of(along: Numbers, lift: float, side: float) -> Array:
 
 @compiled
 def solved(
-    values: Array, c: Array, rows: Array, line: Numbers, moves: Array, slopes: Array
+    values: Array, c: Array, rows: Array, line: Numbers, turns: Array, moves: Array, slopes: Array
 ) -> Array:
     """Return the shares (q + 1, 3) of moves that keep the three conditions under changes.
 
     The changes (q + 1, F, 2) of the coefficients are carried by the map already; with the last
     the relative thickness grows by 1.
     """
+    given = len(turns) > 0
     count = len(slopes)
     system, right = np.zeros((3, 3)), np.zeros((count, 3))
-    own = np.empty((3, 2))
+    own = np.zeros((3, 2))
     for f in range(len(c)):
-        own[0, 0], own[0, 1] = turning(rows, values, f, line)
+        if not given:
+            own[0, 0], own[0, 1] = turning(rows, values, f, line)
         for i in range(2):
             own[1, i], own[2, i] = rows[REACH, f, i], rows[THICKNESS, f, i]
         for m in range(3):
@@ -272,6 +286,8 @@ def solved(
         for q in range(count):
             for i in range(3):
                 right[q, i] -= own[i, 0] * slopes[q, f, 0] + own[i, 1] * slopes[q, f, 1]
+    for q in range(len(turns)):
+        right[q, 0] = -turns[q]
     system[0, 2] -= 1.0
     right[count - 1, 2] = 1.0
     inverse = inverted(system)

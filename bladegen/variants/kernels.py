@@ -26,7 +26,7 @@ from bladegen.variants.sizes import chord_line, sizing
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 16  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 18  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -96,7 +96,7 @@ def made(
             if len(known):
                 known[k, b] = SOUND if laddered(points) else compared(points, moved)
             section = Section(u, slopes[k], c, points)
-            total, own[k, b] = sizing(section, values[k], target[k, b], now, moved, work)
+            total, own[k, b], _, _ = sizing(section, values[k], target[k, b], now, moved, work)
             if not len(sections) and not len(looks):
                 continue
             carry(points, total)

@@ -5,10 +5,12 @@ function, with the notation and the tolerances there.  What is measured: `sectio
 `nose_measures`.
 """
 
+from math import exp, log
+
 from bladegen.airfoils.resizing import LITTLE
-from bladegen.airfoils.section_curves import DOUBLED, EVEN, SETTLED, STEEPEST
-from bladegen.curves.plane_maps import Numbers, combine, distance
-from bladegen.curves.roots import ITERATIONS, ROUNDING
+from bladegen.airfoils.section_curves import FASTEST, SETTLED, SLOWEST
+from bladegen.curves.plane_maps import Numbers, carried, combine, distance
+from bladegen.curves.roots import ITERATIONS
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
 from bladegen.variants.nose_measures import lead, other_nose
@@ -22,10 +24,11 @@ Room = tuple[Array, Array, Array]  # for coefficients (F, 2), points (2, n), and
 @compiled
 def sizing(
     s: Section, values: Array, target: float, now: Array, moved: Array, work: Array
-) -> tuple[Numbers, float]:
+) -> tuple[Numbers, float, Numbers, bool]:
     """Return the map that brings a section to size, and the relative thickness it has.
 
-    Maps are (a, b, c, d, e, f): x' = a x + c y + e and y' = b x + d y + f.
+    Maps are (a, b, c, d, e, f): x' = a x + c y + e and y' = b x + d y + f.  Returned besides are
+    the direction of the chord line that it has, and whether the map may turn it.
     """
     nose, edge, _, wide, best = lead(s, work)
     length = distance(nose, edge)
@@ -36,8 +39,8 @@ def sizing(
     if not wide and abs(stretch - 1.0) > LITTLE:
         wide = other_nose(s, edge, total, best, work)
     if wide:
-        total = rounded(s, values, (edge, along), target, stretch, (now, moved, work))
-    return total, thickness / length
+        total = rounded(s, values, (edge, along, length), target, stretch, (now, moved, work))
+    return total, thickness / length, along, wide
 
 
 @compiled
@@ -61,88 +64,34 @@ def stretching(start: Numbers, along: Numbers, stretch: float, reach: float) -> 
 def rounded(
     s: Section,
     values: Array,
-    line: tuple[Numbers, Numbers],
+    line: tuple[Numbers, Numbers, float],
     target: float,
-    stretch: float,
+    start: float,
     room: Room,
 ) -> Numbers:
     """Return the map where the leading edge may be a mean of many points (`_round`).
 
-    `line` is the trailing-edge midpoint, and the direction of the section's own chord line.
+    `line` is the section's own: the trailing-edge midpoint, the direction, and the chord.
     """
-    edge, own = line
-    stretch, reach, above = stretched(s, values, edge, own, target, stretch, room)
-    side, end, below, turn = (-1.0 if above < 0.0 else 1.0), above, 0.0, 0.0
-    above *= side
-    for _ in range(DOUBLED):
-        if not above > EVEN:
-            break
-        end = min(max(2.0 * end, -STEEPEST), STEEPEST)
-        turn = end
-        stretch, reach, below = stretched(s, values, edge, sloped(own, turn), target, stretch, room)
-        below *= side
-        if not below > 0.0 or abs(end) >= STEEPEST:
-            break
-    if below < -EVEN:
-        place, low, high, kept = 0.0, 0.0, 1.0, 0
-        for _ in range(ITERATIONS):
-            before, place = place, low + (high - low) * (above / (above - below))
-            turn = place * end
-            stretch, reach, value = stretched(
-                s, values, edge, sloped(own, turn), target, stretch, room
-            )
-            value *= side
-            if value > 0.0:
-                low, above = place, value
-                below *= 0.5 if kept == 1 else 1.0
-                kept = 1
-            else:
-                high, below = place, value
-                above *= 0.5 if kept == -1 else 1.0
-                kept = -1
-            if abs(value) <= EVEN or abs(place - before) <= ROUNDING:
-                break
-    total: Numbers = stretching(edge, sloped(own, turn), stretch, reach)
-    return total
-
-
-@compiled
-def sloped(along: Numbers, turn: float) -> Numbers:
-    """Return a direction turned by a slope."""
-    x, y = along[0] - turn * along[1], along[1] + turn * along[0]
-    length = distance((x, y), (0.0, 0.0))
-    return x / length, y / length
-
-
-@compiled
-def stretched(
-    s: Section,
-    values: Array,
-    edge: Numbers,
-    along: Numbers,
-    target: float,
-    stretch: float,
-    room: Room,
-) -> Numbers:
-    """Stretch a section normal to a line to its edge, to a relative thickness (`_stretched`).
-
-    Returns the stretch, the distance of the leading edge then, and by how much its own line's
-    slope differs.
-    """
+    edge, along, chord = line
     now, moved, work = room
-    ax, ay = along
-    thickness = thickest(s, along, work)[0]
-    reach = beyond = 0.0
+    more = missing = step = 0.0  # logarithms
+    reach = chord
     for _ in range(ITERATIONS):
-        for f in range(len(s.c)):
-            now[f, 0] = s.c[f, 0] * ax + s.c[f, 1] * ay
-            now[f, 1] = (s.c[f, 1] * ax - s.c[f, 0] * ay) * stretch
-        now[-1, 0] -= edge[0] * ax + edge[1] * ay
-        now[-1, 1] -= (edge[1] * ax - edge[0] * ay) * stretch
+        carried(s.c, stretching(edge, along, start * exp(more), 1.0), now)
         combine(values, now, moved)
-        nose, _, _, _, _ = lead(Section(s.u, s.slopes, now, moved), work)
-        reach, beyond = distance(nose, (0.0, 0.0)), nose[1] / (stretch * nose[0])
-        before, stretch = stretch, target * reach / thickness
-        if abs(stretch - before) <= SETTLED * stretch:
+        some = Section(s.u, s.slopes, now, moved)
+        nose, end, _, _, _ = lead(some, work)
+        reach = distance(nose, end)
+        own = (end[0] - nose[0]) / reach, (end[1] - nose[1]) / reach
+        left = log(target * reach / thickest(some, own, work)[0])
+        if abs(left) <= SETTLED:
             break
-    return stretch, reach, beyond
+        rate = (missing - left) / step if step != 0.0 else 1.0
+        if rate < 0.0:
+            more, reach = 0.0, chord
+            break
+        missing, step = left, left / min(max(rate, SLOWEST), FASTEST)
+        more += step
+    total: Numbers = stretching(edge, along, start * exp(more), reach)
+    return total

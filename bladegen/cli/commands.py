@@ -38,6 +38,7 @@ SUMMARIES = {
     "plot": "Draw diagrams of a blade.",
     "studio": "See a blade in the browser and play with it: sliders, checks, exports.",
     "space": "Make and look at shape spaces.",
+    "case": "Write cases that flow solvers run: the flow around a section, for OpenFOAM.",
 }
 CONTEXT = {"help_option_names": ["-h", "--help"]}
 
@@ -92,8 +93,12 @@ def function_of(name: str) -> Any:  # noqa: PLR0912
             from bladegen.cli.view import plot as run
         case "studio":
             from bladegen.cli.studio import studio as run
+        case "case":
+            from bladegen.cli.nested.case import app as cases
+
+            return cases
         case _:
-            from bladegen.cli.space import app as space
+            from bladegen.cli.nested.space import app as space
 
             return space
     return run

@@ -40,7 +40,8 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def whole(**given: Any) -> None:
-        COMMAND.set(_typed(command.__name__, parameters, given))
+        words = command.__name__.replace("_", " ")  # of a command within a group: group_command
+        COMMAND.set(_typed(words, parameters, given))
         made = {
             name: group(**{field.name: given.pop(field.name) for field in fields(group)})
             for name, group in groups.items()
@@ -58,7 +59,7 @@ UNTOLD = ("output", "jobs", "dask", "resume", "append")  # options that change n
 
 def _typed(name: str, parameters: list[inspect.Parameter], given: dict[str, Any]) -> str:
     """Return a command as files tell it: without folders, defaults and what changes no file."""
-    words = ["bladegen", name]
+    words = ["bladegen", *name.split()]
     for parameter in parameters:
         value = given[parameter.name]
         if value == parameter.default or parameter.name in UNTOLD:

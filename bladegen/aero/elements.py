@@ -15,6 +15,7 @@ from bladegen.support.arrays import Array
 
 __all__ = ["Elements", "elements_of"]
 
+ENOUGH = 100  # landmarks a side: NeuralFoil takes nine numbers of one
 QUARTER = 0.25  # of the chord, about which polars are
 LINES = np.linspace(0.0, 1.0, 101)  # of the chord, where thickness is measured
 
@@ -32,8 +33,9 @@ class Elements:
         Of the line from nose to trailing edge [m], [rad]; positive twist moves the nose upwind.
     cone : (b, k) array
         How far the span leans upwind there [rad].
-    outlines : (b, k, n, 2) array
-        The sections in chords, nose in the origin, suction side above and first.
+    outlines : (b, k, m, 2) array
+        The sections in chords by some of their landmarks, nose in the origin, suction side
+        above and first.
     thickness : (b, k) array
         Over chord.
     """
@@ -64,8 +66,9 @@ def elements_of(sections: Array, hub_radius: float, cone: float) -> Elements:
     cone : float
         [rad]; positive leans the tips upwind.
     """
-    shape = sections.shape[:2]
-    points = np.asarray(sections, dtype=np.float64).reshape(-1, *sections.shape[2:])
+    shape, some = sections.shape[:2], _some(sections.shape[2])
+    points = np.asarray(sections[:, :, some], dtype=np.float64)
+    points = points.reshape(-1, *points.shape[2:])
     normal = _normals(points)
     flat = _turned(points, normal)
     local, chord = in_chords(flat)
@@ -89,6 +92,13 @@ def elements_of(sections: Array, hub_radius: float, cone: float) -> Elements:
             )
         )
     )
+
+
+def _some(landmarks: int) -> slice:
+    """Return landmarks that are enough, the nose and both ends among them."""
+    half = landmarks // 2
+    steps = [step for step in range(1, max(1, half // ENOUGH) + 1) if half % step == 0]
+    return slice(None, None, steps[-1])
 
 
 def _normals(points: Array) -> Array:

@@ -5,7 +5,7 @@ on; above the rated power it is pitched to hold that.  Neither a least rotor spe
 wakes and stops are counted.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from math import gamma, pi
 
 import numpy as np
@@ -20,6 +20,14 @@ __all__ = ["HOURS", "Conditions", "annual_energy", "weibull_shares"]
 
 HOURS = 8760.0  # of a year
 CLASSES = {"I": 10.0, "II": 8.5, "III": 7.5}  # m/s, yearly means of IEC 61400-1
+UNITS = {
+    "tip_speed": "m_s",
+    "rated_power": "W",
+    "mean_wind": "m_s",
+    "air_density": "kg_m3",
+    "cut_in": "m_s",
+    "cut_out": "m_s",
+}
 WIND_STEP = 0.25  # m/s, of power curves
 
 
@@ -91,6 +99,14 @@ class Conditions:
         }
         wanted |= {name: value for name, value in given.items() if value is not None}
         return cls(**{name: value for name, value in wanted.items() if value is not None})
+
+    @property
+    def named(self) -> dict[str, float | None]:
+        """The conditions by names that hold their units."""
+        return {
+            f"{name}_{UNITS[name]}" if name in UNITS else name: value
+            for name, value in asdict(self).items()
+        }
 
     @property
     def winds(self) -> Array:

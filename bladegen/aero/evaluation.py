@@ -22,14 +22,19 @@ from bladegen.support.arrays import Array
 __all__ = [
     "SPANS",
     "Evaluation",
+    "conditions_of",
     "evaluate",
     "evaluated",
+    "gigawatt_hours",
     "hub_radius_of",
     "of_polars",
     "reynolds_of",
+    "sure",
 ]
 
 SPANS = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 61))  # 121 give 3e-4 of the power more
+
+LIFTING = 0.5  # of the chord: thicker sections are mostly cylinders
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +67,17 @@ class Evaluation:
     rated_wind: Array
     root_moment: Array
     energy: Array
+
+
+def sure(found: Evaluation) -> Array:
+    """Return NeuralFoil's least confidence (b,) in sections that are mostly airfoils."""
+    least = found.polars.least_confidence
+    return np.asarray(np.where(found.elements.thickness < LIFTING, least, 1.0).min(axis=1))
+
+
+def gigawatt_hours(energy: Array) -> Array:
+    """Return energies given in J in GWh."""
+    return energy / 3.6e12
 
 
 def hub_radius_of(rotor: Rotor, name: str) -> float:
@@ -107,8 +123,17 @@ def evaluated(
     hub = hub_radius_of(rotor, plain[0].name) if hub_radius is None else hub_radius
     sections = np.stack([blade.sections(SPANS) for blade in plain])
     elements = elements_of(sections, hub, rotor.cone or 0.0)
-    working = conditions(rotor, float(elements.tip_radius[0]))
+    working = conditions_of(elements, rotor, conditions)
     return evaluate(elements, rotor.blades, working, network=network)
+
+
+def conditions_of(
+    elements: Elements,
+    rotor: Rotor,
+    conditions: Callable[[Rotor, float], Conditions] = Conditions.of,
+) -> Conditions:
+    """Return the conditions of the first rotor of elements: the same on all machines."""
+    return conditions(rotor, round(float(elements.tip_radius[0]), 3))
 
 
 def evaluate(

@@ -27,7 +27,7 @@ FIGURES = ("CL", "CD", "CM", "analysis_confidence")
 
 @dataclass(frozen=True, eq=False)
 class SectionPolars:
-    """Coefficients of sections (...) at `ANGLES` [deg], and beyond them.
+    """Coefficients of sections (...) at angles of attack, by default `ANGLES` [deg].
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class SectionPolars:
         return self._mixed(self.moment)
 
     def extended(self) -> tuple[Array, Array]:
-        """Return lift and drag (..., 721) at the angles of `GRID`."""
+        """Return lift and drag (..., 721) at the angles of `GRID`, if they are at `ANGLES`."""
         shape = self.lift.shape[:-1]
         parts = (part.reshape(-1, part.shape[-1]) for part in (self.lift, self.drag))
         cl, cd = (part.reshape(*shape, -1) for part in around(GRID, np.radians(ANGLES), *parts))
@@ -82,7 +82,12 @@ class SectionPolars:
 
 
 def polars_of(
-    outlines: Array, thickness: Array, reynolds: Array, *, size: str = MODEL
+    outlines: Array,
+    thickness: Array,
+    reynolds: Array,
+    *,
+    angles: Array = ANGLES,
+    size: str = MODEL,
 ) -> SectionPolars:
     """Return the polars of sections.
 
@@ -94,6 +99,8 @@ def polars_of(
         Over chord.
     reynolds : (...) array
         Reynolds numbers.
+    angles : (m,) array
+        Of attack [deg].
     size : str
         Of NeuralFoil's network, of `NETWORKS`.
 
@@ -105,30 +112,30 @@ def polars_of(
         If there is no network of that size.
     """
     one_of(size, NETWORKS, "network", BladegenError)
-    shape, angles = thickness.shape, len(ANGLES)
+    shape = thickness.shape
     flat = np.asarray(outlines, dtype=np.float64).reshape(-1, *outlines.shape[-2:])
     thick = thickness.reshape(-1)
     thinned = np.minimum(1.0, THICK / thick)[:, None]
     weights, _ = kulfan(flat[..., 0], flat[..., 1] * thinned)
     numbers = np.broadcast_to(reynolds, shape).reshape(-1)
-    rows = max(1, AT_ONCE // angles)
+    rows = max(1, AT_ONCE // len(angles))
     parts = [
-        _answer(weights[start : start + rows], numbers[start : start + rows], size)
+        _answer(weights[start : start + rows], numbers[start : start + rows], angles, size)
         for start in range(0, len(weights), rows)
     ]
     found = {name: np.concatenate([part[name] for part in parts]) for name in FIGURES}
-    cl, cd, cm, sure = (values.reshape(*shape, angles) for values in found.values())
+    cl, cd, cm, sure = (values.reshape(*shape, -1) for values in found.values())
     return SectionPolars(cl, cd, cm, sure, rounded(thickness))
 
 
-def _answer(weights: Array, reynolds: Array, size: str) -> dict[str, Any]:
+def _answer(weights: Array, reynolds: Array, angles: Array, size: str) -> dict[str, Any]:
     """Return what the network says of sections with Kulfan's parameters (b, 18), (b, m) each."""
     try:
         import neuralfoil
     except ImportError as error:
         raise MissingLibraryError(error) from None
-    count, angles = len(weights), len(ANGLES)
-    columns = np.repeat(weights, angles, axis=0).T
+    count, each = len(weights), len(angles)
+    columns = np.repeat(weights, each, axis=0).T
     given = {
         "upper_weights": columns[:WEIGHTS],
         "lower_weights": columns[WEIGHTS : 2 * WEIGHTS],
@@ -136,6 +143,6 @@ def _answer(weights: Array, reynolds: Array, size: str) -> dict[str, Any]:
         "TE_thickness": columns[-1],
     }
     found = neuralfoil.get_aero_from_kulfan_parameters(
-        given, np.tile(ANGLES, count), np.repeat(reynolds, angles), model_size=size
+        given, np.tile(angles, count), np.repeat(reynolds, each), model_size=size
     )
-    return {name: np.asarray(found[name]).reshape(count, angles) for name in FIGURES}
+    return {name: np.asarray(found[name]).reshape(count, each) for name in FIGURES}

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -26,9 +27,24 @@ from bladegen.support.stopping import Stopped
 
 __all__ = ["family"]
 
+SHOWN = {  # labels that the summary has
+    "rotor_power_coefficient": "largest power coefficient",
+    "rotor_root_moment": "root moment, N m",
+    "rotor_annual_energy": "annual energy, GWh",
+    "mass": "mass of the layers, kg",
+}
 GRAPH = "graph"  # a format that is no file of a variant, but arrays of the dataset
 
 
+Labels = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--label",
+        metavar="polars|rotor|mass",
+        help="Labels of each sound variant in the dataset: polars of sections, what a rotor does "
+        "(both by NeuralFoil, the extra aero), mass of the layers. With commas, or repeated.",
+    ),
+]
 FamilyFormats = Annotated[
     list[str] | None,
     typer.Option(
@@ -88,6 +104,7 @@ def family(
         bool, typer.Option("--double", help="Store sections as float64, not float32.")
     ] = False,
     formats: FamilyFormats = None,
+    label: Labels = None,
     producing: Producing = PRODUCING,
     making: Making = MAKING,
     mirror: Mirror = False,
@@ -147,6 +164,7 @@ def family(
         "float64" if double else "float32",
         producing.options(),
         graph,
+        tuple(word.strip().lower() for text in label or [] for word in text.split(",")),
     )
     if not is_kept(kernels.made):
         remark("compiling loops, once on this machine: about ten seconds")
@@ -166,6 +184,12 @@ def family(
     except Stopped as stop:
         raise stop.saying(f"{output}: the same command with --resume goes on; ") from None
     _summary(order, made)
+
+
+def _range(values: Any) -> str:
+    """Return the least and the largest of figures, those that are none left out."""
+    known = [value for value in values.tolist() if isfinite(value)]
+    return f"{min(known):.5g} to {max(known):.5g}" if known else "none"
 
 
 @contextmanager
@@ -195,7 +219,9 @@ def _summary(order: Any, made: int) -> None:
     from bladegen.views.contact_sheet import contact_sheet
     from bladegen.views.tables import digits, megabytes
 
-    manifest = read_manifest(order.place, ("name", "valid", "attempts", "volume_m3", "reason"))
+    columns = ["name", "valid", "attempts", "volume_m3", "reason"]
+    shown = [one for one in SHOWN if one in {figure.name for figure in order.labelling.figures}]
+    manifest = read_manifest(order.place, [*columns, *shown])
     sheet = order.target / "contact.png"
     family = order.family
     remark = contact_sheet(
@@ -211,6 +237,7 @@ def _summary(order: Any, made: int) -> None:
         ["draws", f"{int(manifest['attempts'].sum())}"],
         ["volume", f"{smallest} to {largest} m3" if len(volume) else "none"],
         ["sections", f"{len(family.eta)} of {len(family.blade.u)} landmarks, {order.dtype}"],
+        *([SHOWN[name], _range(manifest[name][valid])] for name in shown),
         ["size", megabytes(size)],
         ["overlay", remark],
     ]

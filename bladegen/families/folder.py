@@ -17,10 +17,11 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -145,24 +146,29 @@ class FamilyFolder:
         return [i for i in range(-(-count // self.block)) if self.part(i).name not in there]
 
     def make_sections(
-        self, eta: Any, u: Any, count: int, dtype: str, *, graph: bool = False
+        self,
+        eta: Any,
+        u: Any,
+        count: int,
+        dtype: str,
+        beside: Mapping[str, tuple[tuple[str, ...], tuple[int, ...]]] = MappingProxyType({}),
     ) -> None:
-        """Make the empty store of sections, if it is not there."""
+        """Make the empty store of sections, and of arrays `beside` them, if it is not there."""
         import zarr
 
-        shape = (count, len(eta), len(u), 3)
+        own = {"sections": (("span", "landmark", "xyz"), (len(eta), len(u), 3))}
         try:
             group = zarr.open_group(self.store, mode="a", zarr_format=3, use_consolidated=False)
             group.attrs.update({"unit": "m", "axes": "variant, span, landmark, xyz"})
-            for name, each in {"sections": 4, **(GRAPH if graph else {})}.items():
+            for name, (dimensions, lengths) in {**own, **beside}.items():
                 group.require_array(
                     name,
-                    shape=shape[:each],
+                    shape=(count, *lengths),
                     dtype=dtype if name == "sections" else "float32",
-                    chunks=(1, *shape[1:each]),
-                    shards=(self.block, *shape[1:each]),
+                    chunks=(1, *lengths),
+                    shards=(self.block, *lengths),
                     compressors=None,
-                    dimension_names=("variant", "span", "landmark", "xyz")[:each],
+                    dimension_names=("variant", *dimensions),
                 )
             for name, dimension, values in (("eta", "span", eta), ("u", "landmark", u)):
                 if name not in group:

@@ -14,6 +14,7 @@ from bladegen.errors import FamilyError
 from bladegen.families.dataset.store import opened
 from bladegen.families.folder import GRAPH, FamilyFolder
 from bladegen.families.identity import differences
+from bladegen.families.labels.figures import STORED
 from bladegen.families.order import Order
 from bladegen.support.files import folder, replacing
 
@@ -73,7 +74,7 @@ def settle(place: FamilyFolder, count: int) -> None:
         place.manifest.unlink()
     if place.store.exists():
         store = opened(place.store, writing=True)
-        for name in ("sections", *GRAPH):
+        for name in ("sections", *GRAPH, *STORED):
             if name in store and store[name].shape[0] < count:
                 store[name].resize((count, *store[name].shape[1:]))
 

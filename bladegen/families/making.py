@@ -36,7 +36,10 @@ def make_block(order: Order, number: int) -> Made:
         faults = _faults(order, block)
         for suffix in order.suffixes:
             rows |= _exported(order, block, suffix, faults)
-    order.place.write_block(number, block, rows, _graph(block) if order.graph else {})
+        labels = order.labelling.computed(block)
+    stored = {name: labels.pop(name) for name in order.labelling.arrays()}
+    stored |= _graph(block) if order.graph else {}
+    order.place.write_block(number, block, rows | labels, stored)
     return number, drawn_again(family, block), time.monotonic() - start
 
 

@@ -9,8 +9,9 @@ from bladegen.errors import ExportError, FamilyError
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.registry import format_of
 from bladegen.families.family import BLOCK, Family
-from bladegen.families.folder import FLOAT_TYPES, FamilyFolder
+from bladegen.families.folder import FLOAT_TYPES, GRAPH, FamilyFolder
 from bladegen.families.identity import fingerprint, identity
+from bladegen.families.labels.labelling import Labelling, checked
 from bladegen.formats.writing import MIRRORED
 from bladegen.support.arrays import Array
 from bladegen.surface.fitting import fitted
@@ -38,6 +39,8 @@ class Order:
         How files are made.
     graph : bool
         Store normals and areas of the points, and the graph that they make, beside the sections.
+    labels : tuple of str
+        What else is computed of each sound variant: of `labels.figures.LABELS`.
     """
 
     family: Family
@@ -46,6 +49,7 @@ class Order:
     dtype: str = "float32"
     options: Options = field(default_factory=Options)
     graph: bool = False
+    labels: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.dtype not in FLOAT_TYPES:
@@ -57,6 +61,7 @@ class Order:
         # computed so far is left behind, and `making.make_block` computes it again in one thread.
         fresh = replace(self.family, blade=replace(self.family.blade))
         object.__setattr__(self, "family", fresh)
+        object.__setattr__(self, "labels", checked(self.labels, fresh))
 
     @property
     def suffixes(self) -> list[str]:
@@ -76,7 +81,23 @@ class Order:
             made["options_fingerprint"] = fingerprint(self.options)
         if self.graph:
             made["graph"] = True
+        if self.labels:
+            made["labels"] = self.labelling.settings
         return identity(self.family) | made
+
+    @cached_property
+    def labelling(self) -> Labelling:
+        """What computes the labels."""
+        return Labelling(self.family, self.labels)
+
+    def beside(self) -> dict[str, tuple[tuple[str, ...], tuple[int, ...]]]:
+        """Return dimensions and lengths, after the variant, of float32 arrays beside sections."""
+        graph: dict[str, tuple[tuple[str, ...], tuple[int, ...]]] = {}
+        if self.graph:
+            lengths = len(self.family.eta), len(self.family.blade.u), 3
+            named = "span", "landmark", "xyz"
+            graph = {name: (named[: n - 1], lengths[: n - 1]) for name, n in GRAPH.items()}
+        return graph | self.labelling.arrays()
 
     @property
     def block(self) -> int:

@@ -4,6 +4,7 @@ Blocks do not know of each other, so who makes them and in what order changes no
 """
 
 import logging
+import math
 from collections.abc import Callable
 from contextlib import closing
 from typing import Any
@@ -86,7 +87,7 @@ def run(
         )
         if left:
             place.make_sections(
-                family.eta, family.blade.u, len(family), order.dtype, graph=order.graph
+                family.eta, family.blade.u, len(family), order.dtype, order.beside()
             )
             if order.suffixes:
                 folder(place.blades)
@@ -123,7 +124,8 @@ def _bytes(order: Order, variants: int) -> int:
     """Return how many bytes the sections of some variants take."""
     one = len(order.family.eta) * len(order.family.blade.u) * 3
     each = one * np.dtype(FLOAT_TYPES[order.dtype]).itemsize
-    return variants * (each + (one * 4 * 4 // 3 if order.graph else 0))
+    beside = sum(4 * math.prod(lengths) for _, lengths in order.beside().values())
+    return variants * (each + beside)
 
 
 def _foreseen(order: Order, left: list[int], made: int, seconds: float) -> Forecast:

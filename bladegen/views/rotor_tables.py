@@ -5,11 +5,10 @@ from dataclasses import asdict
 import numpy as np
 
 from bladegen.aero.energy import HOURS
-from bladegen.aero.evaluation import Evaluation
+from bladegen.aero.evaluation import Evaluation, gigawatt_hours, sure
 from bladegen.views.tables import digits
 
 __all__ = [
-    "conditions_figures",
     "conditions_rows",
     "curve_rows",
     "figure_rows",
@@ -30,18 +29,16 @@ SHOWN = {  # how a figure is called, and how many decimals it has
     "tip_radius_m": ("tip radius, m", 2),
     "least_confidence": ("NeuralFoil's least confidence", 2),
 }
-WORKING = {  # field: name with unit, how it is called, factor to what is shown
-    "tip_speed": ("tip_speed_m_s", "largest tip speed, m/s", 1.0),
-    "rated_power": ("rated_power_W", "rated power, MW", 1e-6),
-    "efficiency": ("efficiency", "efficiency of the drive train", 1.0),
-    "mean_wind": ("mean_wind_m_s", "mean wind speed, m/s", 1.0),
-    "weibull_shape": ("weibull_shape", "Weibull shape", 1.0),
-    "cut_in": ("cut_in_m_s", "cut-in, m/s", 1.0),
-    "cut_out": ("cut_out_m_s", "cut-out, m/s", 1.0),
-    "air_density": ("air_density_kg_m3", "air density, kg/m3", 1.0),
+WORKING = {  # how a condition is called, and the factor to what is shown
+    "tip_speed": ("largest tip speed, m/s", 1.0),
+    "rated_power": ("rated power, MW", 1e-6),
+    "efficiency": ("efficiency of the drive train", 1.0),
+    "mean_wind": ("mean wind speed, m/s", 1.0),
+    "weibull_shape": ("Weibull shape", 1.0),
+    "cut_in": ("cut-in, m/s", 1.0),
+    "cut_out": ("cut-out, m/s", 1.0),
+    "air_density": ("air density, kg/m3", 1.0),
 }
-JOULES = 3.6e12  # of a GWh
-LIFTING = 0.5  # of the chord: thicker sections are mostly cylinders
 
 
 def rotor_figures(found: Evaluation, row: int) -> dict[str, float | None]:
@@ -49,7 +46,6 @@ def rotor_figures(found: Evaluation, row: int) -> dict[str, float | None]:
     best, rated = found.performance, found.conditions.rated_power
     power, thrust, moment = best.best[row]
     energy = float(found.energy[row])
-    confidence = found.polars.least_confidence[row][found.elements.thickness[row] < LIFTING]
     figures = {
         "power_coefficient": power,
         "tip_speed_ratio": best.ratio[row],
@@ -58,10 +54,10 @@ def rotor_figures(found: Evaluation, row: int) -> dict[str, float | None]:
         "root_moment_coefficient": moment,
         "rated_wind_m_s": found.rated_wind[row],
         "root_moment_MNm": found.root_moment[row] / 1e6,
-        "annual_energy_GWh": energy / JOULES,
+        "annual_energy_GWh": gigawatt_hours(found.energy)[row],
         "capacity_factor": np.nan if rated is None else energy / (rated * 3600.0 * HOURS),
         "tip_radius_m": found.elements.tip_radius[row],
-        "least_confidence": confidence.min() if confidence.size else np.nan,
+        "least_confidence": sure(found)[row],
     }
     return {name: float(v) if np.isfinite(v) else None for name, v in figures.items()}
 
@@ -77,18 +73,12 @@ def rotor_curve(found: Evaluation, row: int) -> dict[str, list[float]]:
     }
 
 
-def conditions_figures(found: Evaluation) -> dict[str, float | None]:
-    """Return under which conditions rotors work, units in their names."""
-    values = asdict(found.conditions)
-    return {name: values[field] for field, (name, _, _) in WORKING.items()}
-
-
 def conditions_rows(found: Evaluation) -> list[list[str]]:
     """Return a row a condition."""
     values = asdict(found.conditions)
     return [
         [said, "not known" if values[field] is None else f"{factor * values[field]:.4g}"]
-        for field, (_, said, factor) in WORKING.items()
+        for field, (said, factor) in WORKING.items()
     ]
 
 

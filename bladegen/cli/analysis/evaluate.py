@@ -101,7 +101,7 @@ def evaluate(
     names = [made.name for made in blades]
     if as_json:
         document = {
-            "conditions": tables.conditions_figures(found),
+            "conditions": found.conditions.named,
             "network": working.network,
             "blades": [
                 {"name": name, "baseline": changes.asked and row == 0}

@@ -4,9 +4,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from bladegen.families.dataset.splits import SHARES, SPLITS
+from bladegen.families.labels.figures import FIGURES
 
 __all__ = ["card"]
 
+MEANING = """Polars are estimates: NeuralFoil (clean surface, free transition) for each
+section's own shape, with the network's confidence beside them; sections thicker than 40 % are
+thinned to that and mixed with a cylinder. Rotors are rigid, in steady uniform wind along their
+axis, by blade-element momentum theory, at the pitch and the tip speed ratio of the largest power.
+Compare variants with each other before you compare them with a turbine.
+"""
 MEANT = {
     "ellipsoid": "independent, uniform in the ellipsoid that holds the space's data",
     "sobol": "scrambled Sobol points in the box of the bounds",
@@ -41,6 +48,7 @@ def card(identity: Mapping[str, Any], about: Mapping[str, Any], sound: int, draw
     )
     shares = ", ".join(f"{name} {share:.0%}" for name, share in zip(SPLITS, SHARES, strict=True))
     said = "\n".join(f"- {name.replace('_', ' ')}: {about[name]}" for name in about if _told(name))
+    labels = _labels(identity.get("labels", {}))
     unsound = "are drawn again" if identity["invalid"] == "redraw" else "are kept and marked"
     return f"""# {count} variants of {identity["blade"]}
 
@@ -82,7 +90,7 @@ the space or has a nose, tail or waves of no airfoil, within what was allowed. D
 sound {unsound}: {draws} draws in all.
 
 {said}
-
+{labels}
 ## Splits
 
 The variable `split` says for each variant train, validation or test: {shares} on
@@ -97,6 +105,39 @@ it too. (The definitions that come with bladegen name theirs in their first line
 O. A. Doronina, Z. J. Grey, A. Glaws: Grassmannian Shape Representations for Aerodynamic
 Applications, 2022.
 """
+
+
+def _labels(labels: Mapping[str, Any]) -> str:
+    """Return the section on labels; nothing but a line's end if there are none."""
+    if not labels:
+        return ""
+    rows = [
+        f"| `{one.name}` | {', '.join(('variant', *one.dims))} | {one.long_name} | {one.units} |"
+        for label in labels
+        for one in FIGURES[label]
+    ]
+    told = []
+    for label, how in labels.items():
+        words = [f"`{key}` {_shown(value)}" for key, value in how.items()]
+        told += [f"- {label}: {', '.join(words)}"] if words else []
+    return f"""
+## Labels
+
+Computed for each sound variant; NaN for others.
+
+| variable | dimensions | what | unit |
+| --- | --- | --- | --- |
+{chr(10).join(rows)}
+
+{chr(10).join([MEANING, *told])}
+"""
+
+
+def _shown(value: Any) -> str:
+    """Return a setting as text: numbers short, lists with slashes."""
+    if isinstance(value, list):
+        return " / ".join(map(_shown, value))
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _angle(name: str) -> bool:

@@ -7,7 +7,7 @@ and written some thousands at a time.
 """
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,15 @@ import numpy as np
 from bladegen.errors import ExportError
 from bladegen.families.dataset.graphs import edges, triangles
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
-from bladegen.families.dataset.variables import COORDINATES, Variable, parameter, variables
+from bladegen.families.dataset.variables import (
+    COORDINATES,
+    LABELLED,
+    Variable,
+    parameter,
+    variables,
+)
+from bladegen.families.labels.figures import STORED
+from bladegen.families.labels.figures import axes as axes_of_labels
 
 __all__ = ["column_values", "complete", "is_complete", "opened"]
 
@@ -80,22 +88,24 @@ def complete(
             warnings.simplefilter("ignore")  # Zarr's, that consolidated metadata may change
             wanted = variables(file.schema_arrow.names, list(identity["factors"]))
             _describe(group)
-            _fill(group, file, wanted, int(identity["seed"]))
+            axes = _axes(group, list(identity.get("labels", ())))
+            _fill(group, file, wanted, axes, int(identity["seed"]))
             names = [parameter(factor).name for factor in identity["factors"]]
             group.attrs.update(
-                {**about, **_said(wanted, names), "variants": file.metadata.num_rows}
+                {**about, **_said(wanted, names, axes), "variants": file.metadata.num_rows}
             )
             zarr.consolidate_metadata(group.store)
     except OSError as error:
         raise ExportError(f"{store}: cannot be written: {error.strerror or error}") from None
 
 
-def _said(wanted: list[Variable], parameters: list[str]) -> dict[str, Any]:
+def _said(wanted: list[Variable], parameters: list[str], axes: Mapping[str, int]) -> dict[str, Any]:
     names = [one.name for one in wanted if one.name in COORDINATES and one.name != "variant"]
+    names += [name for name in COORDINATES if name in FIXED]
     return {
         "Conventions": CONVENTIONS,
         "parameters": parameters,
-        "coordinates": " ".join([*names, *(name for name in COORDINATES if name in FIXED)]),
+        "coordinates": " ".join([*names, *axes]),
     }
 
 
@@ -121,10 +131,29 @@ def _describe(group: Any) -> None:
         group[name].attrs.update({"long_name": long_name} | ({"units": units} if units else {}))
 
 
-def _fill(group: Any, file: Any, wanted: list[Variable], seed: int) -> None:
+def _axes(group: Any, labels: Sequence[str]) -> dict[str, int]:
+    """Write the axes of labels, and what arrays of theirs hold; return the lengths of axes."""
+    found = axes_of_labels(labels, group["eta"][:])
+    for name, (dimension, values, long_name, units) in found.items():
+        group.create_array(
+            name,
+            data=values,
+            dimension_names=(dimension,),
+            attributes={"long_name": long_name, "units": units},
+            overwrite=True,
+        )
+    for one in LABELLED:
+        if one.name in STORED and one.name in group:
+            group[one.name].attrs.update(one.attributes)
+    return {name: len(values) for name, (_, values, _, _) in found.items()}
+
+
+def _fill(
+    group: Any, file: Any, wanted: list[Variable], axes: Mapping[str, int], seed: int
+) -> None:
     """Write all variables, some rows at a time."""
     count, arrays = file.metadata.num_rows, {}
-    lengths = {"variant": count, "span": group["sections"].shape[1]}
+    lengths = {"variant": count, "span": group["sections"].shape[1], **axes}
     rows = max(1, CHUNK // lengths["span"])
     split = Variable("split", "", ("variant",), f"{', '.join(SPLITS)}: {SHARES} on average")
     kinds = {

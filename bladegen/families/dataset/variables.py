@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bladegen.curves import polygons
+from bladegen.families.labels.figures import FIGURES
 from bladegen.measures.spanwise import UNITS
 
 __all__ = ["COORDINATES", "Variable", "parameter", "variables"]
@@ -91,6 +92,12 @@ SPANWISE = (
     ),
 )
 
+LABELLED = tuple(
+    Variable(one.name, one.name, ("variant", *one.dims), one.long_name, one.units)
+    for figures in FIGURES.values()
+    for one in figures
+)
+
 
 def parameter(factor: str) -> Variable:
     """Return the variable of a factor of the design."""
@@ -107,7 +114,7 @@ def parameter(factor: str) -> Variable:
 
 def variables(columns: Sequence[str], factors: Sequence[str]) -> list[Variable]:
     """Return the variables of a family whose manifest has some columns."""
-    own = [*FLAT, *map(parameter, factors), *SPANWISE]
+    own = [*FLAT, *map(parameter, factors), *SPANWISE, *LABELLED]
     known = {one.column for one in own} | {"seed"}
     files = [
         Variable(name, name, ("variant",), _of_file(name)) for name in columns if name not in known

@@ -218,6 +218,9 @@ def test_coefficients_are_those_of_ccblade(ccblade, tmp_path, straight):
     script = [ccblade, Path(__file__).with_name("ccblade.py"), file]
     told = subprocess.run(script, capture_output=True, text=True, check=True).stdout
     theirs = np.array(told.split(), dtype=float).reshape(-1, 3)
+    if straight:  # CCBlade's moment is about the rotor's axis, ours about the blade's root
+        lever = given.radius[0, 0] / given.radius[0, -1] / 3.0
+        assert_allclose(found[:, 2] + lever * found[:, 1], theirs[:, 2], rtol=1e-4)
     # CCBlade takes solidity and losses at radii along the blade, we at those from the axis
     assert_allclose(found[:, :2], theirs[:, :2], rtol=1e-4 if straight else 1.5e-2)
 
@@ -316,7 +319,7 @@ def test_conditions_come_from_the_file_and_from_what_is_given():
 # ---- the command -------------------------------------------------------------------------------
 
 
-def test_a_blade_is_evaluated_beside_its_baseline():
+def test_a_blade_is_evaluated_beside_its_baseline(tmp_path):
     words = ("evaluate", "nrel5mw", "--twist", "1", "--network", "xxsmall")
     figures = json.loads(run(*words, "--json").output)
     baseline, variant = figures["blades"]
@@ -325,8 +328,10 @@ def test_a_blade_is_evaluated_beside_its_baseline():
     assert variant["pitch_deg"] == pytest.approx(baseline["pitch_deg"] - 1.0, abs=0.2)
     assert len(variant["curve"]["power_coefficient"]) == len(variant["curve"]["tip_speed_ratio"])
     assert figures["conditions"]["rated_power_W"] == 5e6
-    shown = run(*words)
+    shown = run(*words, "--plot", tmp_path / "rotor.svg")
     assert shown.exit_code == 0
+    assert (tmp_path / "rotor.svg").stat().st_size > 10_000
+    assert max(variant["power_W"]) == 5e6
     for word in ("annual energy, GWh", "change", "nrel5mw-perturbed", "Cp, variant"):
         assert word in shown.output
 

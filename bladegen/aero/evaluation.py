@@ -51,6 +51,8 @@ class Evaluation:
         Coefficients over tip speed ratio, and the optimum.
     conditions : Conditions
         Under which they work.
+    power : (b, w) array
+        At the wind speeds of `conditions.winds`, held at the rated power where it is reached [W].
     rated_wind : (b,) array
         Where the rated power is reached [m/s]; without one, where the largest tip speed is reached
         at the optimum; NaN if neither is before cut-out.
@@ -64,6 +66,7 @@ class Evaluation:
     polars: SectionPolars
     performance: Performance
     conditions: Conditions
+    power: Array
     rated_wind: Array
     root_moment: Array
     energy: Array
@@ -176,13 +179,13 @@ def of_polars(
     rated = conditions.rated_power
     if rated is not None:
         reached = _first_reached(winds, power, rated)
-        held = np.where(winds >= reached[:, None], rated, np.maximum(power, 0.0))
+        power = np.where(winds >= reached[:, None], rated, np.maximum(power, 0.0))
         mean, shape = conditions.mean_wind, conditions.weibull_shape
-        energy = annual_energy(winds, held, mean, shape)
+        energy = annual_energy(winds, power, mean, shape)
     reached = np.where((reached >= winds[0]) & (reached <= winds[-1]), reached, np.nan)
     moments = found[..., 2] * force * end
     moment = [np.interp(at, winds, row) for at, row in zip(reached, moments, strict=True)]
-    return Evaluation(elements, polars, best, conditions, reached, np.array(moment), energy)
+    return Evaluation(elements, polars, best, conditions, power, reached, np.array(moment), energy)
 
 
 def _first_reached(winds: Array, power: Array, rated: float) -> Array:

@@ -101,7 +101,8 @@ def _change(before: float | None, after: float | None, name: str) -> str:
         return ""
     if name == "pitch_deg":
         return f"{after - before:+.2f}"
-    return f"{100.0 * (after / before - 1.0):+.2f} %" if before else ""
+    share = round(100.0 * (after / before - 1.0), 2) if before else 0.0
+    return f"{share:+.2f} %" if share else "0"
 
 
 def curve_rows(found: Evaluation) -> list[list[str]]:

@@ -2,12 +2,13 @@
 
 import json
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from bladegen.cli.options.common import MAKING, BladeName, Json, Making
-from bladegen.cli.options.groups import grouped
+from bladegen.cli.options.common import MAKING, BladeName, Json, Making, ending_in
+from bladegen.cli.options.groups import COMMAND, grouped
 from bladegen.cli.options.perturbing import NO_CHANGES, Changes
 from bladegen.cli.terminal import print_table, progress_bar
 
@@ -64,6 +65,13 @@ def evaluate(
     changes: Changes = NO_CHANGES,
     making: Making = MAKING,
     working: Working = WORKING,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            help="A diagram of power and thrust coefficient and power curve: PNG, SVG, PDF.",
+            callback=ending_in(".png", ".svg", ".pdf"),
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Evaluate a blade: power, thrust, root moment and annual energy.
@@ -99,14 +107,23 @@ def evaluate(
             network=working.network,
         )
     names = [made.name for made in blades]
+    if plot is not None:
+        from bladegen.exports.marks import marked
+        from bladegen.exports.provenance import drawn_of
+        from bladegen.plots.rotor_plot import draw
+
+        with marked(plot, drawn_of(blades[-1], command=COMMAND.get())) as temporary:
+            draw(found, names, temporary)
     if as_json:
         document = {
             "conditions": found.conditions.named,
             "network": working.network,
+            "wind_m_s": found.conditions.winds.tolist(),
             "blades": [
                 {"name": name, "baseline": changes.asked and row == 0}
                 | tables.rotor_figures(found, row)
                 | {"curve": tables.rotor_curve(found, row)}
+                | {"power_W": found.power[row].tolist()}
                 for row, name in enumerate(names)
             ],
         }
@@ -122,3 +139,5 @@ def evaluate(
     print_table(["tip speed ratio", *columns], tables.curve_rows(found), title="at that pitch")
     if found.conditions.rated_power is None:
         typer.echo("note: no rated power is known, so no annual energy; give one: --rated-power 10")
+    if plot is not None:
+        typer.echo(f"wrote {plot}")

@@ -7,7 +7,22 @@ import numpy as np
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array
 
-__all__ = ["curve", "edge", "face", "filled", "line", "surface", "wire"]
+__all__ = [
+    "curve",
+    "edge",
+    "edge_on",
+    "face",
+    "face_within",
+    "filled",
+    "line",
+    "ruled",
+    "segment_on",
+    "sewn",
+    "surface",
+    "wire",
+]
+
+NEAR = 1e-3  # mm; of a curve in space from the same curve in a surface's parameters
 
 
 def surface(poles: Array, u_knots: Array, v_knots: Array) -> Any:
@@ -92,3 +107,69 @@ def filled(edges: list[Any]) -> Any:
     if not made.IsDone():
         raise CadError("an end of the blade does not lie in a plane")
     return made.Face()
+
+
+def edge_on(on: Any, poles: Array, knots: Array) -> Any:
+    """Make the edge along a spline (n, 2) in the parameters of a surface."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.BRepLib import BRepLib
+    from OCP.Geom2d import Geom2d_BSplineCurve
+    from OCP.gp import gp_Pnt2d
+    from OCP.TColgp import TColgp_Array1OfPnt2d
+
+    points = TColgp_Array1OfPnt2d(1, len(poles))
+    for i, (u, v) in enumerate(poles.tolist(), start=1):
+        points.SetValue(i, gp_Pnt2d(u, v))
+    flat = Geom2d_BSplineCurve(points, *_knots(knots), len(knots) - len(poles) - 1, False)
+    made = BRepBuilderAPI_MakeEdge(flat, on).Edge()
+    if not BRepLib.BuildCurve3d_s(made, NEAR):
+        raise CadError("OCCT found no curve in space along a line on the surface")
+    return made
+
+
+def segment_on(on: Any, start: tuple[float, float], end: tuple[float, float]) -> Any:
+    """Make the edge along a straight line in the parameters of a surface."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.BRepLib import BRepLib
+    from OCP.GCE2d import GCE2d_MakeSegment
+    from OCP.gp import gp_Pnt2d
+
+    flat = GCE2d_MakeSegment(gp_Pnt2d(*start), gp_Pnt2d(*end)).Value()
+    made = BRepBuilderAPI_MakeEdge(flat, on).Edge()
+    BRepLib.BuildCurve3d_s(made, NEAR)
+    return made
+
+
+def face_within(on: Any, edges: list[Any]) -> Any:
+    """Make the face of a surface that a closed loop of edges on it encloses."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+
+    made = BRepBuilderAPI_MakeFace(on, wire(edges), True)
+    if not made.IsDone():
+        raise CadError(f"OCCT made no face of a loop of edges ({made.Error().name})")
+    return made.Face()
+
+
+def ruled(first: Any, second: Any) -> Any:
+    """Make the face of straight lines between two edges that run the same way."""
+    from OCP.BRepFill import BRepFill
+
+    return BRepFill.Face_s(first, second)
+
+
+def sewn(faces: list[Any], slack: float) -> tuple[Any, list[Any]]:
+    """Sew faces that meet within a slack [mm] to a shell; return it, and its faces in order."""
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+    from OCP.TopoDS import TopoDS, TopoDS_Shell
+
+    sewing = BRepBuilderAPI_Sewing(slack)
+    for one in faces:
+        sewing.Add(one)
+    sewing.Perform()
+    made = [TopoDS.Face_s(sewing.Modified(one) if sewing.IsModified(one) else one) for one in faces]
+    shell, builder = TopoDS_Shell(), BRep_Builder()
+    builder.MakeShell(shell)
+    for one in made:
+        builder.Add(shell, one)
+    return shell, made

@@ -27,7 +27,7 @@ from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet
 from bladegen.surface.regions import EDGE, ROOT, TIP, TIP_EDGE, colour
 from bladegen.surface.tips import Tip, flat_tip
 
-__all__ = ["DEFAULT_TOLERANCE", "Solid", "solid"]
+__all__ = ["DEFAULT_TOLERANCE", "LINEAR", "Solid", "cap", "closed", "solid"]
 
 logger = logging.getLogger(__name__)
 DIGITS = 6  # of a pole's coordinates in mm: nanometres; more would only make files larger
@@ -147,7 +147,7 @@ def solid(
     poles[:, 1:-1] = np.round(poles[:, 1:-1], DIGITS)  # root and tip stay in their planes
     scaled = replace(net, poles=poles)
     faces = _faces(scaled, blade.sides, net.blunt, tip, split)
-    shape, named = _closed(faces, blade.name)
+    shape, named = closed(faces, blade.name)
     return Solid(shape, named, net, deviation, tip_volume(net, tip), blade.name)
 
 
@@ -172,20 +172,20 @@ def _faces(
         )
     ]
     if blunt:
-        strip = Patch(np.stack([net.poles[-1], net.poles[0]]), _LINEAR, net.v_knots)
+        strip = Patch(np.stack([net.poles[-1], net.poles[0]]), LINEAR, net.v_knots)
         rows = pieces.cut(pieces.with_knots(strip, none, more_v), none, v)
         faces += _numbered(EDGE, [shaping.face(shaping.surface(*row[0])) for row in rows])
-    faces.append((ROOT, _cap([p for rows in cut for p in rows[0]], 0, blunt)))
+    faces.append((ROOT, cap([p for rows in cut for p in rows[0]], 0, blunt)))
     poles = rounded(net, tip)
     if poles is None:
-        faces.append((TIP, _cap([p for rows in cut for p in rows[-1]], -1, blunt)))
+        faces.append((TIP, cap([p for rows in cut for p in rows[-1]], -1, blunt)))
         return faces
     # OCCT's quadrature takes as many points along u as v has knot spans: v goes to the nose
     own = Patch(poles.swapaxes(0, 1), BEZIER, net.halves()[0].u_knots)
     across = pieces.cut(pieces.with_knots(own, none, more_u), none, u)
     faces += _numbered(TIP, [shaping.face(shaping.surface(*row[0])) for row in across])
     if blunt:
-        edge = shaping.surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
+        edge = shaping.surface(edge_poles(poles)[[-1, 0]], LINEAR, BEZIER)
         faces.append((TIP_EDGE, shaping.face(edge)))
     return faces
 
@@ -197,10 +197,10 @@ def _numbered(name: str, faces: list[Any]) -> list[tuple[str, Any]]:
     return [(f"{name} {number}", face) for number, face in enumerate(faces, start=1)]
 
 
-_LINEAR = np.array([0.0, 0.0, 1.0, 1.0])
+LINEAR = np.array([0.0, 0.0, 1.0, 1.0])
 
 
-def _cap(around: list[Patch], end: int, blunt: bool) -> Any:
+def cap(around: list[Patch], end: int, blunt: bool) -> Any:
     """Make the plane face inside the section at an end, the first row or the last, of patches."""
     edges = [shaping.edge(shaping.curve(patch.poles[:, end], patch.u_knots)) for patch in around]
     if blunt:
@@ -208,14 +208,24 @@ def _cap(around: list[Patch], end: int, blunt: bool) -> Any:
     return shaping.filled(edges)
 
 
-def _closed(faces: list[tuple[str, Any]], name: str) -> tuple[Any, tuple[tuple[str, Any], ...]]:
-    """Sew faces to one outward solid; return it and its faces by name, or say what is wrong."""
+def closed(
+    faces: list[tuple[str, Any]], name: str, slack: float = SEWING
+) -> tuple[Any, tuple[tuple[str, Any], ...]]:
+    """Sew faces that meet within a slack [mm] to one outward solid.
+
+    Returned are the solid, and its faces by name in their order.
+
+    Raises
+    ------
+    CadError
+        If the result is not one valid closed solid.
+    """
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
     from OCP.BRepLib import BRepLib
     from OCP.TopAbs import TopAbs_SHELL
     from OCP.TopoDS import TopoDS
 
-    sewing = BRepBuilderAPI_Sewing(SEWING)
+    sewing = BRepBuilderAPI_Sewing(slack)
     for _, face in faces:
         sewing.Add(face)
     sewing.Perform()

@@ -26,7 +26,13 @@ from bladegen.errors import BladegenError
 __all__ = ["build", "perturb"]
 
 
-CURVES = "curves.step"
+CURVES, STRUCTURE = "curves.step", "structure.step"
+Inside = Annotated[
+    bool,
+    typer.Option(
+        "--structure", help="Skin cut where layers end and webs too, NAME.structure.step."
+    ),
+]
 Curves = Annotated[
     bool,
     typer.Option(
@@ -44,6 +50,7 @@ def build(
     making: Making = MAKING,
     producing: Producing = PRODUCING,
     curves: Curves = False,
+    structure: Inside = False,
     rotor: Annotated[
         bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
     ] = False,
@@ -78,7 +85,7 @@ def build(
             else metres(hub_radius, "hub-radius", example="2m"),
             cone=None if precone is None else radians(precone, "precone"),
         )
-    _build(made, output, _with_curves(suffixes, curves), options, whole)
+    _build(made, output, _with(suffixes, {CURVES: curves, STRUCTURE: structure}), options, whole)
 
 
 @grouped
@@ -91,6 +98,7 @@ def perturb(
     making: Making = MAKING,
     producing: Producing = PRODUCING,
     curves: Curves = False,
+    structure: Inside = False,
     mirror: Mirror = False,
 ) -> None:
     """Perturb a blade consistently and build it."""
@@ -102,15 +110,15 @@ def perturb(
     options, suffixes = producing.options(), suffixes_of(formats)
     made = changes.applied(making.blade(blade, landmarks))
     made = made.mirror_image() if mirror else made
-    _build(made, output, _with_curves(suffixes, curves), options)
+    _build(made, output, _with(suffixes, {CURVES: curves, STRUCTURE: structure}), options)
 
 
-def _with_curves(formats: tuple[str, ...], asked: bool) -> tuple[str, ...]:
-    """Return the formats, those by default if none are given, and curves if these are asked for."""
+def _with(formats: tuple[str, ...], asked: dict[str, bool]) -> tuple[str, ...]:
+    """Return the formats, those by default if none are given, and what is asked for besides."""
     from bladegen.exports.build import DEFAULT_FORMATS
 
     formats = formats or DEFAULT_FORMATS
-    return (*formats, CURVES) if asked and CURVES not in formats else formats
+    return (*formats, *(one for one, wanted in asked.items() if wanted and one not in formats))
 
 
 def _build(

@@ -30,6 +30,7 @@ class Kind(StrEnum):
     triangles = "triangles"
     grid = "grid"
     shell = "shell"
+    structure = "structure"
     definition = "definition"
     table = "table"
     picture = "picture"
@@ -120,7 +121,7 @@ class Options:
     def settings(self, kind: Kind, suffix: str) -> dict[str, str]:
         """Return the options that matter to a file of a kind and suffix, in words."""
         found: dict[str, str] = {}
-        if kind in (Kind.solid, Kind.curves):
+        if kind in (Kind.solid, Kind.curves, Kind.structure):
             if self.sections is None:
                 found["tolerance_mm"] = word(1e3 * self.tolerance)
             else:

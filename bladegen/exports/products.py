@@ -7,13 +7,16 @@ from pathlib import Path
 
 from bladegen.blade.blade import Blade
 from bladegen.cad import solids
+from bladegen.cad.structure import assembly
 from bladegen.errors import ExportError, Finding
 from bladegen.exports import marks
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.provenance import Provenance, made_from
+from bladegen.layup.layup import Layup
 from bladegen.layup.shell.model import ShellModel, shell_model
 from bladegen.surface import mesh
 from bladegen.surface.grids import grid
+from bladegen.surface.tips import flat_tip
 
 __all__ = ["Products"]
 
@@ -53,14 +56,30 @@ class Products:
         return grid.from_blade(self.blade, self.options.spacing, self.options.tip)
 
     @cached_property
-    def shell(self) -> ShellModel:
-        """The shell model of skin and webs."""
-        layup = self.blade.layup
+    def inside(self) -> assembly.Inside:
+        """The skin, cut where layers end, and the webs."""
+        layup, solid = self._layup("a structure in CAD"), self.solid
+        self.progress("cutting the skin where layers end")
+        made = assembly.inside(solid, layup)
+        self.remarks.extend(made.findings)
+        if self.options.tip is not flat_tip:
+            self.remarks.append(Finding("structure", "its skin ends flat, without the round tip"))
+        return made
+
+    def _layup(self, what: str) -> Layup:
+        """Return what lies inside the skin, or say that there is nothing."""
+        layup: Layup | None = self.blade.layup
         if layup is None:
             raise ExportError(
-                f"{self.blade.name}: its definition has no webs and layers, of which a shell model "
+                f"{self.blade.name}: its definition has no webs and layers, of which {what} "
                 "is made; iea15mw and nrel5mw have some, and turbine files of windIO"
             )
+        return layup
+
+    @cached_property
+    def shell(self) -> ShellModel:
+        """The shell model of skin and webs."""
+        layup = self._layup("a shell model")
         self.progress("making the shell")
         model = shell_model(layup, self.options.element)
         self.remarks.extend(model.findings)

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from bladegen.cad import curves, exchange
+from bladegen.cad.structure import assembly
 from bladegen.errors import ExportError
 from bladegen.exports.definitions import marking
 from bladegen.exports.options import UNITS, Kind
@@ -75,6 +76,12 @@ def _write_curves(products: Products, path: Path) -> None:
     options = products.options
     told = {"schema": options.step_schema, **options.told}
     curves.write_curves(products.solid, products.blade, path, **told)
+
+
+def _write_structure(products: Products, path: Path) -> None:
+    options = products.options
+    told = {"schema": options.step_schema, **options.told}
+    assembly.write_structure(products.inside, products.blade.name, path, **told)
 
 
 def _write_stl(products: Products, path: Path) -> None:
@@ -171,9 +178,12 @@ FORMATS = {
     ".igs": Format(Kind.solid, "the same as .iges", _write_iges),
     ".brep": Format(Kind.solid, "OCCT's own BREP, one closed solid, mm", _write_brep),
     ".curves.step": Format(
-        Kind.curves,
-        "STEP, stations, edges and axes as named curves, mm",
-        _write_curves,
+        Kind.curves, "STEP, stations, edges and axes as named curves, mm", _write_curves
+    ),
+    ".structure.step": Format(
+        Kind.structure,
+        "STEP, skin cut where layers end and webs, an assembly, mm",
+        _write_structure,
     ),
     ".stl": Format(Kind.triangles, "STL, binary triangles, m (or mm)", _write_stl),
     ".regions.stl": Format(

@@ -96,6 +96,13 @@ class Outlines:
         found: Array = start + share[..., None] * (end - start)
         return found
 
+    def parameters(self, fraction: Array) -> Array:
+        """Return the landmark parameters u (..., k) at fractions (..., k) within 0 to 1."""
+        cell, share = self._cells(fraction)
+        u = self.blade.u
+        found: Array = u[cell] + share * (u[cell + 1] - u[cell])
+        return found
+
     def moments(self, start: Array, end: Array) -> tuple[Array, Array]:
         """Return lengths (..., k) [m] and integrals of the points (..., k, 3) [m2] between places.
 

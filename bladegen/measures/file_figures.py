@@ -15,39 +15,33 @@ from bladegen.surface import mesh
 __all__ = ["mesh_figures", "solid_figures"]
 
 SLIVER = 1e-12  # of a mesh's extent; triangles lower than this are degenerate
-MEMBERS = ("solids", "shells", "faces")
 
 
 def solid_figures(shape: Any, *, quick: bool = False) -> dict[str, Any]:
     """Measure a shape of OCCT [mm]: topology, validity, volume, area, bounding box.
 
-    `quick` takes OCCT's coarse volume, off by up to 1e-3: good for comparing a shape with
+    Sheets beside solids, such as webs, are counted and left out of all but validity.  `quick`
+    takes OCCT's coarse volume, off by up to 1e-3: good for comparing a shape with
     its copy, not for quoting.
     """
     from OCP.Bnd import Bnd_Box
     from OCP.BRep import BRep_Tool
     from OCP.BRepBndLib import BRepBndLib
-    from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-    from OCP.TopExp import TopExp_Explorer
 
-    members: dict[str, list[Any]] = {}
-    for key, kind in zip(MEMBERS, (TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE), strict=True):
-        explorer, found = TopExp_Explorer(shape, kind), []
-        while explorer.More():
-            found.append(explorer.Current())
-            explorer.Next()
-        members[key] = found
+    whole, (shape, sheets) = shape, shapes.bodies(shape)
+    solids, shells, faces = (shapes.members(shape, kind) for kind in ("solid", "shell", "face"))
     box = Bnd_Box()
     BRepBndLib.AddOptimal_s(shape, box, False, False)
     bounds = np.array(box.Get() if not box.IsVoid() else (0.0,) * 6) / shapes.MILLIMETRES
-    shells = members["shells"]
-    closed = bool(shells) and all(BRep_Tool.IsClosed_s(shell) for shell in shells)
     volume = shapes.quick_volume if quick else shapes.volume
     return {
-        **{key: len(found) for key, found in members.items()},
-        "valid": shapes.is_valid(shape),
-        "closed": closed,
-        "one_solid": len(members["solids"]) == 1,
+        "solids": len(solids),
+        "shells": len(shells),
+        "faces": len(faces),
+        **({"sheets_beside": sheets} if sheets else {}),
+        "valid": shapes.is_valid(whole),
+        "closed": bool(shells) and all(BRep_Tool.IsClosed_s(shell) for shell in shells),
+        "one_solid": len(solids) == 1,
         "volume_m3": volume(shape) / shapes.MILLIMETRES**3,
         "area_m2": shapes.area(shape) / shapes.MILLIMETRES**2,
         "bounds_m": _bounds(bounds.reshape(2, 3)),

@@ -103,11 +103,11 @@ def _figures(path: Path) -> Answer:
 
 def _surface(path: Path) -> Answer:
     """Send faces [m] or triangles, with what a unit is in metres if the file says so."""
-    from bladegen.cad import face_patches
+    from bladegen.cad import face_patches, shapes
 
     shape = _loaded(path)
     if path.suffix.lower() in SOLIDS:
-        arrays, lost = face_patches.faces(shape)
+        arrays, lost = face_patches.faces(shapes.bodies(shape)[0])
         return Answer({"metres": 1.0, "lost": lost}, arrays)
     own = METRES.get(str(shape.units)) if path.suffix.lower() == ".3mf" else None
     metres = 1.0 if path.suffix.lower() == ".glb" else own

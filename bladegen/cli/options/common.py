@@ -89,9 +89,9 @@ Formats = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
-        help="CAD: step iges brep curves.step; triangles: stl regions.stl glb ply obj 3mf vtp; "
-        "grids: p3d fmt cgns vtu; shells: inp; definitions: yaml (windIO 2) dat (OpenFAST) htc "
-        "(HAWC2) csv xlsx; sections.csv; png. Several with commas, or repeated.",
+        help="CAD: step iges brep curves.step structure.step; triangles: stl regions.stl glb ply "
+        "obj 3mf vtp; grids: p3d fmt cgns vtu; shells: inp; definitions: yaml (windIO 2) dat "
+        "(OpenFAST) htc (HAWC2) csv xlsx; sections.csv; png. Several with commas, or repeated.",
     ),
 ]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]

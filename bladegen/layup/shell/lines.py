@@ -45,8 +45,19 @@ class Lines:
     moved: dict[str, float]
 
 
-def mesh_lines(structure: Structure, outlines: Outlines) -> Lines:
-    """Return the lines of a blade's shell at the spans of its outlines."""
+def mesh_lines(
+    structure: Structure,
+    outlines: Outlines,
+    *,
+    apart: float = APART,
+    same: float = SAME,
+    edge: float = EDGE,
+) -> Lines:
+    """Return the lines of a blade's shell at the spans of its outlines.
+
+    `apart` is the least distance between two, of the arc; ends of layers that are nearer than
+    `same` to another line, or than `edge` to the trailing edge, in the mean have none of their own.
+    """
     ends = {
         f"{web.name}/{i}": _everywhere(end, outlines)
         for web in structure.webs
@@ -55,7 +66,7 @@ def mesh_lines(structure: Structure, outlines: Outlines) -> Lines:
     hard = ends | {"nose": _everywhere(LEADING_EDGE, outlines)}
     order = sorted(hard, key=lambda name: float(hard[name].mean()))
     wanted = np.stack([hard[name] for name in order], axis=-1)
-    kept = _spread(wanted, np.zeros(len(wanted)), np.ones(len(wanted)))
+    kept = _spread(wanted, np.zeros(len(wanted)), np.ones(len(wanted)), apart)
     names = ["start", *order, "end"]
     count = len(outlines.eta)
     rows = [np.zeros(count), *kept.T, np.ones(count)]
@@ -64,7 +75,7 @@ def mesh_lines(structure: Structure, outlines: Outlines) -> Lines:
             line = _everywhere(end, outlines)
             middle = float(line.mean())
             near = min(float(np.abs(line - row).mean()) for row in rows)
-            if EDGE < middle < 1.0 - EDGE and near > SAME:
+            if edge < middle < 1.0 - edge and near > same:
                 place = sum(float(row.mean()) < middle for row in rows)
                 rows.insert(place, line)
                 names.insert(place, "")
@@ -72,7 +83,7 @@ def mesh_lines(structure: Structure, outlines: Outlines) -> Lines:
     fixed = [i for i, name in enumerate(names) if name]
     for first, last in pairwise(fixed):
         inner = slice(first + 1, last)
-        lines[:, inner] = _spread(lines[:, inner], lines[:, first], lines[:, last])
+        lines[:, inner] = _spread(lines[:, inner], lines[:, first], lines[:, last], apart)
     at = {name: i for i, name in enumerate(names) if name}
     feet = {web.name: (at[f"{web.name}/0"], at[f"{web.name}/1"]) for web in structure.webs}
     moved = {
@@ -108,12 +119,12 @@ def _held(place: Position) -> Position:
     )
 
 
-def _spread(lines: Array, low: Array, high: Array) -> Array:
+def _spread(lines: Array, low: Array, high: Array, least: float) -> Array:
     """Return lines (k, n) in order between two others (k,), at their least distance at least."""
     n = lines.shape[-1]
     if not n:
         return lines
-    apart = np.minimum(APART, 0.5 * (high - low) / (n + 1))[:, None]
+    apart = np.minimum(least, 0.5 * (high - low) / (n + 1))[:, None]
     steps = apart * np.arange(1, n + 1)
     up = np.maximum.accumulate(np.maximum(lines, low[:, None] + apart) - steps, axis=-1) + steps
     back = apart * np.arange(n, 0, -1)

@@ -1,0 +1,149 @@
+"""Structure in CAD: the skin cut where layers end, webs between its sides, one STEP assembly."""
+
+import json
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from typer.testing import CliRunner
+
+import bladegen as bg
+from bladegen.cad import exchange, shapes, solids
+from bladegen.cad.structure.assembly import inside, write_structure
+from bladegen.cad.structure.zones import bays_of
+from bladegen.cli import commands
+from bladegen.errors import ExportError
+from bladegen.exports.options import Options
+from bladegen.exports.products import Products
+from bladegen.measures.checks import solid_figures
+from bladegen.surface.tips import round_tip
+
+LAYERS = ["Spar_Cap_SS", "LE_reinforcement", "TE_reinforcement_PS", "TE_SS_filler"]
+
+
+def blade_of(name):
+    return bg.Blade.from_definition(bg.read(name), landmarks=101)
+
+
+@pytest.fixture(
+    scope="module", params=["iea15mw", pytest.param("nrel5mw", marks=pytest.mark.nightly)]
+)
+def made(request):
+    blade = blade_of(request.param)
+    solid = solids.solid(blade, tolerance=5e-3)
+    return blade, solid, inside(solid, blade.layup)
+
+
+def test_the_skin_is_the_solid_cut(made):
+    _, solid, parts = made
+    assert shapes.is_valid(parts.skin.shape)
+    assert_allclose(shapes.volume(parts.skin.shape) / 1e9, solid.volume, rtol=1e-6)
+    assert_allclose(shapes.area(parts.skin.shape) / 1e6, solid.area, rtol=3e-5)  # OCCT's quadrature
+
+
+def test_faces_have_the_areas_of_layers_and_webs(made):
+    """Against the layers' own widths over the span, which know of no faces."""
+    blade, _, parts = made
+    eta = np.linspace(0.0, 1.0, 4001)
+    laid, structure = blade.layup.at(eta), blade.definition.structure
+    along = np.linalg.norm(blade.definition.axis(eta, 1), axis=-1)
+    width = np.where(laid.thickness > 0.0, laid.width, 0.0)
+    wanted = {
+        layer.name: np.trapezoid(own * along, eta)
+        for layer, own in zip(structure.layers, width, strict=True)
+        if not layer.web
+    }
+    wanted |= {
+        web.name: np.trapezoid(height * along, eta)
+        for web, height in zip(structure.webs, laid.web_height, strict=True)
+    }
+    assert parts.areas.keys() == wanted.keys()
+    for name, area in wanted.items():
+        assert_allclose(parts.areas[name], area, rtol=0.01, err_msg=name)
+    assert not parts.findings
+
+
+def test_webs_stand_on_the_skin(made):
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+    from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+
+    _, _, parts = made
+    assert parts.webs
+    faces = [face for name, face, _ in parts.skin.pieces if ": " in name]
+    for web in parts.webs:
+        assert shapes.is_valid(web.shape)
+        BRepMesh_IncrementalMesh(web.shape, 100.0)
+        corners = shapes.members(web.shape, "vertex")
+        assert len(corners) >= 4
+        for corner in corners[:4]:
+            point = BRepBuilderAPI_MakeVertex(_place(corner)).Vertex()
+            assert min(BRepExtrema_DistShapeShape(point, face).Value() for face in faces) < 0.02
+
+
+def _place(vertex):
+    from OCP.BRep import BRep_Tool
+    from OCP.TopoDS import TopoDS
+
+    return BRep_Tool.Pnt_s(TopoDS.Vertex_s(vertex))
+
+
+def test_bays_end_where_webs_do_and_lines_do_not_cross(made):
+    blade, solid, _ = made
+    bays = bays_of(blade.layup, solid.net.v)
+    ends = np.array([bay.v[0] for bay in bays] + [1.0])
+    for web in blade.definition.structure.webs:
+        for end in web.extent:
+            assert np.abs(ends - end).min() < 5e-3
+    for bay in bays:
+        assert np.all(np.diff(bay.lines, axis=0) > 0.0)
+        assert_allclose(bay.lines[bay.nose], 0.5)
+        assert all(0 < a < bay.nose < b for a, b in bay.feet.values())
+
+
+def test_a_mirror_image_has_the_same_zones(made):
+    blade, _, parts = made
+    other = blade.mirror_image()
+    again = inside(solids.solid(other, tolerance=5e-3), other.layup)
+    assert shapes.is_valid(again.skin.shape)
+    for name, area in parts.areas.items():
+        assert_allclose(again.areas[name], area, rtol=1e-3, err_msg=name)
+    assert {name for name, *_ in again.skin.pieces} == {name for name, *_ in parts.skin.pieces}
+
+
+def test_the_file_is_one_solid_with_named_faces_and_sheets(made, tmp_path):
+    blade, solid, parts = made
+    for name in "ab":
+        path = tmp_path / f"{name}.step"
+        write_structure(parts, blade.name, path, timestamp="2026-01-02T03:04:05")
+    assert path.read_bytes() == (tmp_path / "a.step").read_bytes()
+    text = "".join(path.read_text().split())  # lines break within names
+    for part in (*parts.webs, parts.skin):
+        assert f"PRODUCT('{part.name}'" in text
+    for name, *_ in parts.skin.pieces:
+        assert f"ADVANCED_FACE('{''.join(name.split())}'" in text
+    figures = solid_figures(exchange.read(path))
+    assert [figures[key] for key in ("solids", "closed", "valid")] == [1, True, True]
+    assert figures["sheets_beside"] == len(parts.webs)
+    assert_allclose(figures["volume_m3"], solid.volume, rtol=1e-6)
+
+
+def test_a_command_writes_it_beside_the_solid_and_check_reads_it(tmp_path):
+    words = f"perturb iea15mw -o {tmp_path} --thickness 1.03 --landmarks 101 --tolerance 10mm"
+    run = CliRunner().invoke(commands.app, [*words.split(), "--format", "step", "--structure"])
+    assert run.exit_code == 0, run.output
+    path = tmp_path / "iea15mw-perturbed.structure.step"
+    report = json.loads((tmp_path / "iea15mw-perturbed.report.json").read_text())
+    assert set(LAYERS) <= report["structure"]["faces_m2"].keys()
+    run = CliRunner().invoke(commands.app, ["check", str(path)])
+    assert run.exit_code == 0, run.output
+    assert "sheets beside" in run.output
+
+
+def test_what_cannot_be_had_is_said(tmp_path):
+    bare = blade_of("dtu10mw")
+    with pytest.raises(ExportError, match="has no webs and layers, of which a structure in CAD"):
+        bg.export(bare, tmp_path / "a.structure.step")
+    products = Products(blade_of("nrel5mw"), Options(tip=round_tip, tolerance=5e-3))
+    assert products.inside.webs
+    assert any("without the round tip" in str(said) for said in products.remarks)

@@ -17,12 +17,23 @@ from bladegen.families.identity import fingerprint
 from bladegen.families.order import Order
 from bladegen.views import contact_sheet
 
-READING = {"info", "check", "convert", "build", "perturb", "family", "preview", "plot", "studio"}
+READING = {
+    "info",
+    "check",
+    "convert",
+    "build",
+    "perturb",
+    "family",
+    "preview",
+    "plot",
+    "studio",
+} | {"evaluate"}
 CALLS = [
     "info BLADE --json",
     "check BLADE",
     "check BLADE BLADE --json",
     "convert BLADE OUT/a.yaml",
+    "evaluate BLADE --hub-radius 2m --json",
     "build BLADE -o OUT --format sections.csv --landmarks 101",
     "perturb BLADE -o OUT --twist 1 --format sections.csv --landmarks 101",
     "plot BLADE -o OUT/a.svg --what planform --landmarks 101",

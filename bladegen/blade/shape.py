@@ -75,7 +75,7 @@ class Shape:
             finer = (
                 points
                 if u is None
-                else finer + loft.splines.values(u) @ (points - joined.curves.points)
+                else finer + loft.splines.between(u, points - joined.curves.points)
             )
             A, c, *_ = self._restored(joined, stages, wanted)
         else:

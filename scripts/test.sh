@@ -16,6 +16,9 @@ state() {
 }
 
 before="$(state)"
+# compiled loops are kept on the disk: made here once, and not by every process that counts its lines
+for kind in families derivatives; do .venv/bin/python scripts/warm.py "$kind" & done
+wait
 # worksteal keeps a module's tests, and what they share, in one process as far as it can
 .venv/bin/python -m pytest -n "${JOBS:-2}" --dist worksteal --cov --cov-report= "$@"
 after="$(state)"

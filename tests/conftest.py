@@ -2,9 +2,15 @@
 
 HYPOTHESIS_PROFILE is `steady`, the same examples on every run; `thorough`, more of them, for
 `make test-all`; or `explore`, new ones each time.
+
+Matrix products take one thread, unless OMP_NUM_THREADS says otherwise: tests run side by side
+already, and threads that wait for each other spin, for two to four times the processor's time.
 """
 
 import os
+
+os.environ["OMP_NUM_THREADS"] = os.environ.get("OMP_NUM_THREADS", "1")
+
 import signal
 from pathlib import Path
 

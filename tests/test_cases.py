@@ -6,6 +6,7 @@ import shutil
 import subprocess
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -72,7 +73,7 @@ def test_cells_are_sound_along_the_blade(name, eta):
     layers, chord = made.layers, made.flow.chord
     assert crossed(layers[:-1], layers[1:]).min() > 0.0
     assert np.degrees(non_orthogonality(layers).max()) < 45.0
-    assert np.linalg.norm(layers[-1] - [0.5 * chord, 0.0], axis=1).min() > 49.0 * chord
+    assert np.linalg.norm(layers[-1] - [0.5 * chord, 0.0], axis=1).min() > 499.0 * chord
     height = 2.0 * first_height(made.flow.reynolds, chord, 1.0)
     first = np.linalg.norm(layers[1] - layers[0], axis=1) / height
     assert first.min() > 0.9
@@ -278,7 +279,7 @@ def test_a_sharp_edge_and_a_folded_mesh_are_refused():
         section_case(blade(), 0.0)
 
 
-def test_neither_other_files_nor_results_are_overwritten(tmp_path, mesh):
+def test_neither_other_files_nor_results_are_overwritten(tmp_path, mesh, monkeypatch):
     made = mesh[0]
     (tmp_path / "README.md").write_text("of a bladegen user\n")
     with pytest.raises(ExportError, match="holds other files"):
@@ -288,8 +289,13 @@ def test_neither_other_files_nor_results_are_overwritten(tmp_path, mesh):
     made.write(tmp_path / "case")
     assert {path.name for path in tmp_path.iterdir()} == {"README.md", "case"}
     (tmp_path / "case" / "postProcessing").mkdir()
-    with pytest.raises(ExportError, match="holds the results of a run"):
+    with pytest.raises(ExportError, match=r"holds the results of a run.* -o .*case2"):
         made.write(tmp_path / "case")
+    monkeypatch.chdir(tmp_path / "case")
+    with pytest.raises(ExportError, match=r"holds the results of a run.* -o case2"):
+        made.write(Path())
+    (tmp_path / "case" / "postProcessing").rmdir()
+    made.write(Path())
 
 
 def run(*words):
@@ -336,7 +342,7 @@ def test_openfoam_takes_the_mesh_and_its_lift_is_that_of_neuralfoil(tmp_path, na
     results = tmp_path / "case" / "postProcessing"
     history = table(results / "forces" / "0" / "coefficient.dat")
     drag, lift, moment = (history[name][-1] for name in ("Cd", "Cl", "CmPitch"))
-    assert_allclose(history["Cl"][-50:], lift, rtol=1e-3)
+    assert_allclose(history["Cl"][-20:], lift, rtol=2e-3)
     section = blade(name).profiles([eta])[0]
     wanted = coefficients(section, made.flow.alpha, made.flow.reynolds).values
     assert_allclose(lift, wanted[0], rtol=0.1)

@@ -71,7 +71,7 @@ def around(blade: Blade, eta: float, cells: int = 512) -> Outline:
     width = float(np.linalg.norm(ends[0] - ends[1]))
     if width < THINNEST:
         raise GeometryError(
-            f"trailing edge: at eta = {eta:g} it is {1e3 * width * chord[0]:.3g} mm thick, the "
+            f"trailing edge: at eta = {eta:g} it is {1e3 * width * chord[0]:.3f} mm thick, the "
             f"mesh needs {1e3 * THINNEST * chord[0]:.2g} mm; such as --trailing-edge 2mm"
         )
     base = max(LEAST, int(np.ceil(width / min(EDGE, 1.0 / cells))))

@@ -111,9 +111,9 @@ class SectionCase:
             If the folder holds anything else, or cannot be written.
         """
         _require_ours(folder)
-        target = files.folder(folder)
+        target = files.folder(folder).resolve()
         try:
-            with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as name:
+            with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as name:
                 draft = Path(name)
                 self._write(draft, command)
                 for part in OWN:
@@ -157,7 +157,7 @@ def section_case(
     y_plus: float = 2.0,
     cells: int = 512,
     growth: float = 1.15,
-    radius: float = 50.0,
+    radius: float = 500.0,
     end: int = 1000,
     progress: Callable[[str], None] = lambda _: None,
 ) -> SectionCase:
@@ -212,7 +212,7 @@ def _require_ours(folder: Path) -> None:
     if any(file.is_dir() and file.name not in OWN for file in folder.iterdir()):
         raise ExportError(
             f"{folder}: holds the results of a run; remove it, or take another folder, such as "
-            f"-o {folder.with_name(folder.name + '2')}"
+            f"-o {folder.parent / f'{folder.resolve().name}2'}"
         )
 
 

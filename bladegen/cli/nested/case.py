@@ -51,7 +51,7 @@ def case_openfoam(
     y_plus: Annotated[float, typer.Option(help="Of the first cells' centres.")] = 2.0,
     cells: Annotated[int, typer.Option(help="Around the section.")] = 512,
     growth: Annotated[float, typer.Option(help="Of cells' heights from layer to layer.")] = 1.15,
-    radius: Annotated[float, typer.Option(help="Of the far field, chords.")] = 50.0,
+    radius: Annotated[float, typer.Option(help="Of the far field, chords.")] = 500.0,
     end: Annotated[int, typer.Option(help="Iterations at most.")] = 1000,
     making: Making = MAKING,
     as_json: Json = False,

@@ -7,10 +7,11 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cli import commands
-from bladegen.errors import BladegenError
+from bladegen.errors import BladegenError, PerturbationError
 from bladegen.fitting.deviations import DeviationMap
 from bladegen.measures import surfaces
 from bladegen.surface.mesh import from_blade
+from bladegen.views.deviations import write
 
 RUN = CliRunner()
 
@@ -90,10 +91,10 @@ def test_maps_are_looked_at(blade):
 
 
 def test_check_writes_maps_of_a_scan(blade, tmp_path, foreign_here, monkeypatch):
-    from bladegen.fitting import deviations
+    from bladegen.fitting import patterns
 
     monkeypatch.setattr(DeviationMap.measured.__func__, "__kwdefaults__", {"spans": 12})
-    assert deviations.SPANS > 12
+    assert patterns.SPANS > 12
     scan = bg.export(blade, tmp_path / "scan.stl", stations=30)
     bg.write(bg.read("nrel5mw"), tmp_path / "blade.yaml")
     paths = [tmp_path / f"map.{suffix}" for suffix in ("csv", "vtp", "png")]
@@ -112,3 +113,105 @@ def test_check_writes_maps_of_a_scan(blade, tmp_path, foreign_here, monkeypatch)
     assert "name one as OTHER" in str(result.exception)
     result = RUN.invoke(commands.app, ["check", str(scan), str(scan), "--deviation", str(paths[0])])
     assert "is no definition" in str(result.exception)
+
+
+def test_a_variant_with_wear_is_the_variant_worn(blade, eroded):
+    variant = blade.perturbed(twist=0.02)
+    worn = blade.perturbed(twist=0.02, deviation=eroded)
+    eta = np.linspace(0.0, 1.0, 40)
+    assert_allclose(worn.sections(eta), eroded.applied(variant).sections(eta), atol=0)
+    assert worn.changes[0] == variant.changes[0]
+    assert_allclose(worn.changes[1]["deviation"]["inward_mm"], 5.0)
+    with pytest.raises(PerturbationError, match=r"deviation: got 3, must be a bladegen.Deviation"):
+        blade.perturbed(deviation=3)
+
+
+def test_a_mirror_image_is_worn_alike(blade, eroded):
+    eta = np.linspace(0.5, 1.0, 20)
+    one = eroded.applied(blade).mirror_image().sections(eta)
+    assert_allclose(eroded.applied(blade.mirror_image()).sections(eta), one, atol=1e-12)
+
+
+def test_waves_have_their_length_and_height():
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), fairing=None)
+    maps = DeviationMap.waves(blade, start=0.4, end=0.8, length=0.4, height=0.01)
+    at = np.argmin(np.abs(maps.eta - 0.6))
+    values = maps.values[at]
+    assert_allclose([values.max(), values.min()], [0.005, -0.005], rtol=0.03)
+    points = blade.sections(maps.eta[at])
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    crests = arc[1:-1][(values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])]
+    inner = np.diff(crests[crests < arc[200] - 0.4])
+    assert len(inner) > 3
+    assert_allclose(inner, 0.4, atol=0.04)
+    assert np.all(maps.values[maps.eta <= 0.4] == 0.0)
+    with pytest.raises(BladegenError, match=r"length 0\.01 m is less than 8 landmarks"):
+        DeviationMap.waves(blade, start=0.4, length=0.01, height=0.001)
+
+
+def test_maps_add_up_and_come_back_from_a_table(blade, eroded, tmp_path):
+    hit = DeviationMap.dent(blade, eta=0.4, u=0.2, size=1.0, depth=0.01)
+    both = eroded + hit
+    assert set(both.eta) == {*eroded.eta, *hit.eta}
+    at = np.isin(both.eta, hit.eta) & (both.eta < 0.55)
+    inside = hit.values[np.isin(hit.eta, both.eta[at])]
+    assert_allclose(both.values[at], inside, atol=1e-12)
+    path = tmp_path / "map.csv"
+    write(both, blade, path)
+    again = DeviationMap.read(path)
+    assert_allclose(again.values, both.values, atol=1e-9)
+    assert_allclose(again.eta, both.eta, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("eta,u\n0,0\n", "has no column deviation_mm"),
+        (
+            "eta,u,deviation_mm\n0,0,1\n0,1,1\n1,0,1\n",
+            "has 3 rows, must have one for each of 2 eta",
+        ),
+        ("eta,u,deviation_mm\n0,0,x\n", "a row holds no 3 numbers"),
+        ("eta,u,deviation_mm\n0,0,nan\n0,1,1\n1,0,1\n1,1,1\n", "must be numbers"),
+    ],
+)
+def test_tables_that_are_no_maps_are_one_line(text, said, tmp_path):
+    path = tmp_path / "map.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(BladegenError, match=said):
+        DeviationMap.read(path)
+
+
+def test_commands_put_wear_dents_and_maps_on_the_skin(blade, tmp_path):
+    hit = DeviationMap.dent(blade, eta=0.4, u=0.2, size=1.0, depth=0.01)
+    write(hit, blade, tmp_path / "map.csv")
+    words = f"perturb nrel5mw -o {tmp_path} --landmarks 101 --format sections.csv --name worn"
+    more = ["--erosion", "0.6,1,0.06,5mm", "--dent", "0.3,0.7,800mm,8mm"]
+    run = RUN.invoke(commands.app, [*words.split(), *more, "--deviation", f"{tmp_path}/map.csv"])
+    assert run.exit_code == 0, run.output
+    rows = np.loadtxt(tmp_path / "worn.sections.csv", delimiter=",", skiprows=1)
+    own = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
+    eta = np.unique(rows[:, 0])
+    off = np.linalg.norm(rows[:, -3:].reshape(len(eta), 101, 3) - own.sections(eta), axis=-1)
+    for place, depth in (((0.4, 20), 0.01), ((0.3, 70), 0.008), ((0.8, 50), 0.005)):
+        near = np.argmin(np.abs(eta - place[0]))
+        about = slice(place[1] - 10, place[1] + 11)
+        assert_allclose(off[near, about].max(), depth, rtol=0.15)
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        (("--erosion", "0.7,1,4mm"), "must be FROM,TO,WIDTH,DEPTH, such as 0.7,0.98,0.03,4mm"),
+        (("--erosion", "0.7,1,3,4mm"), "got a width of 3, must be more than 0 and at most 1"),
+        (("--erosion", "0.9,0.7,0.1,4mm"), "start and end must rise within 0 to 1"),
+        (("--dent", "0.5,0.2,600,10mm"), "dent: size: got '600', must be a length with its unit"),
+        (("--dent", "50,0.2,600mm,10mm"), "the span fraction and the place around"),
+        (("--dent", "0.9,0.3,300mm,2m"), "can take: it crosses itself"),
+    ],
+)
+def test_slips_are_answered_in_a_line(option, said, tmp_path):
+    words = f"perturb nrel5mw -o {tmp_path} --landmarks 101 --format sections.csv"
+    run = RUN.invoke(commands.app, [*words.split(), *option])
+    assert run.exit_code != 0
+    assert said in str(run.exception)

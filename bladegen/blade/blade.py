@@ -18,10 +18,10 @@ from bladegen.blade.changes.deformation import AffineChange, Coordinates, Window
 from bladegen.blade.edges import MINIMUM_EDGE, TrailingEdge
 from bladegen.blade.lofting.loft import lofted
 from bladegen.blade.lofting.paths import DEFAULT, PATHS
-from bladegen.blade.perturbation import Perturbation, Where, change_of, together, told
+from bladegen.blade.perturbation import Perturbation, Where, change_of, deviated, together, told
 from bladegen.blade.planform import Planform, SectionPlanes, flange_to_axis
 from bladegen.blade.shape import Shape
-from bladegen.blade.soundness import Trial, leaving
+from bladegen.blade.soundness import leaving
 from bladegen.blade.spans import MIRROR, around, reflected, span_fractions
 from bladegen.definition import fair_planform as fair
 from bladegen.definition.blade_definition import BladeDefinition, Distribution
@@ -97,7 +97,7 @@ class Blade:
         )
 
     plot, mesh, export, point = outputs.plot, outputs.mesh, outputs.export, outputs.point
-    stations = outputs.stations
+    require_sound, stations = outputs.require_sound, outputs.stations
     volume, _repr_html_ = cached_property(outputs.volume), outputs.html
     layup = cached_property(outputs.layup)
     _crowding, breaks = cached_property(outputs.crowding), cached_property(outputs.breaks)
@@ -231,6 +231,7 @@ class Blade:
         chord_line: str = KEPT,
         allow_extrapolation: bool = False,
         allow_odd: bool = False,
+        deviation: Any = None,
         name: str | None = None,
     ) -> Blade:
         """Return a perturbed blade; this one stays as it is.
@@ -252,6 +253,8 @@ class Blade:
         allow_extrapolation, allow_odd : bool
             Let sections leave the space's data, or be such as no aerodynamicist would take
             (`sanity`); findings say which do.
+        deviation : bladegen.DeviationMap, optional
+            Wear, dents or a measured deviation that is put on the perturbed skin.
         name : str, optional
             The perturbed blade's name; this one's by default.
 
@@ -269,7 +272,8 @@ class Blade:
         said = variant.findings
         for deformation in variant.deformations[len(self.deformations) :]:
             said += leaving(self.shape, deformation, allowed=allow_extrapolation)
-        return replace(variant, findings=said).require_sound(allow_odd=allow_odd)
+        made = replace(variant, findings=said).require_sound(allow_odd=allow_odd)
+        return deviated(made, deviation)
 
     def untested(
         self,
@@ -291,9 +295,3 @@ class Blade:
             planform=replace(self.planform, definition=asked.defined(self.definition, name)),
             changes=(*self.changes, asked.asked),
         )
-
-    def require_sound(self, *, allow_odd: bool = False) -> Blade:
-        """Return the blade if its sections are sound; findings say which are odd, if allowed."""
-        asked = self.changes[-1] if self.changes else {}
-        found = Trial(self.shape, self.definition, asked).findings(allow_odd=allow_odd)
-        return replace(self, findings=self.findings + found) if found else self

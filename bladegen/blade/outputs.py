@@ -7,13 +7,15 @@ These functions are methods of `Blade`.  Rooms above it do the work, and are ask
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from bladegen.blade.crowding import Crowding
 from bladegen.blade.edges import PAIRWISE
+from bladegen.blade.soundness import Trial
 from bladegen.blade.spans import both_sides, grid_points, landmarks_at, span_fractions
 from bladegen.errors import DefinitionError, GeometryError
 from bladegen.support.arguments import whole
@@ -32,11 +34,13 @@ __all__ = [
     "mesh",
     "plot",
     "point",
+    "require_sound",
     "stations",
     "volume",
 ]
 
 Tip = Callable[..., Any]
+Own = TypeVar("Own")
 
 
 def plot(
@@ -156,3 +160,17 @@ def layup(blade: Any) -> Any:
 
 
 html = shown_by("blade_html")
+
+
+def require_sound(blade: Own, *, allow_odd: bool = False) -> Own:
+    """Return the blade if its sections are sound; findings say which are odd, if allowed.
+
+    Raises
+    ------
+    PerturbationError
+        If a section crosses itself or, unless that is allowed, is odd.
+    """
+    own: Any = blade
+    asked = own.changes[-1] if own.changes else {}
+    found = Trial(own.shape, own.definition, asked).findings(allow_odd=allow_odd)
+    return replace(own, findings=own.findings + found) if found else blade

@@ -6,7 +6,7 @@ prebend move by the paper's affine parameters.  A `Perturbation` takes a `Shape`
 """
 
 from dataclasses import dataclass, replace
-from typing import Any, TypedDict
+from typing import Any, TypedDict, TypeVar
 
 from bladegen.airfoils.chord_lines import KEPT
 from bladegen.blade.changes.deformation import (
@@ -26,8 +26,9 @@ from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import amount, instance, numbers, shown
 from bladegen.support.arrays import ArrayLike
 
-__all__ = ["Perturbation", "Where", "change_of", "together", "told"]
+__all__ = ["Perturbation", "Where", "change_of", "deviated", "together", "told"]
 
+Own = TypeVar("Own")
 CALL = "call perturbed(space, [t1, t2, ...]), with space = bladegen.ShapeSpace.bundled()"
 
 
@@ -152,3 +153,16 @@ def told(change: dict[str, Any]) -> str:
         first = ", ".join(f"{value:.4g}" for value in rows[0])
         words.insert(0, f"t {first}" if len(rows) == 1 else f"t at {len(rows)} spans")
     return f"; perturbed: {', '.join(words) or 'by nothing'}"
+
+
+def deviated(blade: Own, deviation: Any) -> Own:
+    """Return a blade with a deviation on its skin, or say that it is none."""
+    if deviation is None:
+        return blade
+    if not callable(getattr(deviation, "applied", None)):
+        raise PerturbationError(
+            f"deviation: got {shown(deviation)}, must be a bladegen.DeviationMap, such as "
+            "bladegen.DeviationMap.erosion(blade, start=0.7, end=0.98, width=0.03, depth=0.004)"
+        )
+    made: Own = deviation.applied(blade)
+    return made

@@ -6,6 +6,7 @@ what the modes of a shape space would do besides, and the rest: dents and dings.
 """
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -13,19 +14,25 @@ from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.blade import Blade
 from bladegen.blade.lofting.loft import Loft
 from bladegen.blade.shape import Shape
+from bladegen.curves.crossing import crossing_sections
 from bladegen.definition.blade_definition import Airfoil, Distribution, Station
-from bladegen.errors import BladegenError
+from bladegen.definition.distribution import united
+from bladegen.errors import BladegenError, FileError
+from bladegen.fitting import patterns
 from bladegen.measures import distances
 from bladegen.measures.surfaces import Surface
 from bladegen.shapes import affine
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array, readonly
+from bladegen.support.files import content_of
 
 __all__ = ["DeviationMap"]
 
-SPANS = 120
 FARTHEST = 0.5  # m: what lies farther away is another surface
+APART = 1e-5  # of the span, between spans of maps that are added
 DIGITS = 9  # of airfoil coordinates
+MOST = 1 << 28  # bytes of a table
+GRID, VALUES = ("eta", "u"), "deviation_mm"
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +67,9 @@ class DeviationMap:
         return f"<DeviationMap of {len(self.eta)} x {len(self.u)}: {low:.3g} to {high:.3g} mm>"
 
     @classmethod
-    def measured(cls, blade: Blade, surface: Surface, *, spans: int = SPANS) -> "DeviationMap":
+    def measured(
+        cls, blade: Blade, surface: Surface, *, spans: int = patterns.SPANS
+    ) -> "DeviationMap":
         """Measure how far a surface lies from a blade, in the blade's frame.
 
         Raises
@@ -97,12 +106,8 @@ class DeviationMap:
         depth : float
             At the leading edge [m]; it ends smoothly.
         """
-        _between(start, end)
-        eta = np.unique(np.concatenate([np.linspace(0.0, 1.0, SPANS), [start, end]]))
-        arc = _arcs(blade, eta)
-        along = np.clip((eta - start) / (0.2 * (end - start)), 0.0, 1.0) * (eta <= end)
-        across = np.clip(1.0 - np.abs(arc) / width, 0.0, 1.0)
-        return cls(eta, blade.u, -depth * _smooth(along)[:, None] * _smooth(across))
+        eta, values = patterns.erosion(blade, start, end, width, depth)
+        return cls(eta, blade.u, values)
 
     @classmethod
     def dent(
@@ -121,12 +126,75 @@ class DeviationMap:
         depth : float
             At its middle [m].
         """
-        reach = size / blade.length
-        near = np.linspace(max(eta - reach, 0.0), min(eta + reach, 1.0), 41)
-        spans = np.unique(np.concatenate([np.linspace(0.0, 1.0, SPANS // 2), near]))
-        middle = blade.sections(np.array([eta]), np.array([u]))[0, 0]
-        away = np.linalg.norm(blade.sections(spans) - middle, axis=-1)
-        return cls(spans, blade.u, -depth * _smooth(np.clip(1.0 - 2.0 * away / size, 0.0, 1.0)))
+        spans, values = patterns.dent(blade, eta, u, size, depth)
+        return cls(spans, blade.u, values)
+
+    @classmethod
+    def waves(
+        cls, blade: Blade, *, start: float, end: float = 1.0, length: float, height: float
+    ) -> "DeviationMap":
+        """Return the pattern of a wavy skin: waves along the arc on both sides.
+
+        Parameters
+        ----------
+        blade : Blade
+            Whose sections are meant.
+        start, end : float
+            Span fractions between which they are; over a fifth of that they set in at either end.
+        length : float
+            Of a wave along the arc [m].
+        height : float
+            From trough to crest [m]; they fade over a wave at the leading and trailing edge.
+        """
+        eta, values = patterns.waves(blade, start, end, length, height)
+        return cls(eta, blade.u, values)
+
+    @classmethod
+    def read(cls, path: str | Path) -> "DeviationMap":
+        """Read a map from a table with columns eta, u and deviation_mm, as `check` writes it.
+
+        Raises
+        ------
+        FileError
+            If a column is missing, a value is no number, or a span lacks a landmark.
+        """
+        text = content_of(Path(path), MOST).decode("utf-8", "replace")
+        header, _, rest = text.partition("\n")
+        names = [name.strip() for name in header.split(",")]
+        missing = [name for name in (*GRID, VALUES) if name not in names]
+        if missing:
+            raise FileError(
+                str(path),
+                [f"has no column {', '.join(missing)}; check SCAN BLADE --deviation writes them"],
+            )
+        try:
+            rows = np.loadtxt(rest.splitlines(), delimiter=",", ndmin=2, dtype=np.float64)
+            columns = rows[:, [names.index(name) for name in (*GRID, VALUES)]].T
+        except (ValueError, IndexError) as error:
+            raise FileError(str(path), [f"a row holds no {len(names)} numbers: {error}"]) from None
+        eta, u = (np.unique(values) for values in columns[:2])
+        if len(eta) < 2 or len(u) < 2 or rows.shape[0] != len(eta) * len(u):
+            said = f"has {len(rows)} rows, must have one for each of {len(eta)} eta and {len(u)} u"
+            raise FileError(str(path), [said])
+        values = columns[2][np.lexsort((columns[1], columns[0]))]
+        return cls(eta, u, values.reshape(len(eta), len(u)) / 1e3)
+
+    def __add__(self, other: "DeviationMap") -> "DeviationMap":
+        """Return both together, at the spans of either; the landmarks are these."""
+        from scipy.interpolate import PchipInterpolator
+
+        eta = united(self.eta, other.eta, apart=APART)
+        values = sum(
+            PchipInterpolator(one.eta, one.at(self.u), axis=0)(np.clip(eta, *one.eta[[0, -1]]))
+            for one in (self, other)
+        )
+        return DeviationMap(eta, self.u, np.asarray(values))
+
+    def at(self, u: Array) -> Array:
+        """Return the values at landmark parameters (m,), (k, m), by splines along the arc."""
+        if len(u) == len(self.u) and np.array_equal(u, self.u):
+            return self.values
+        return np.asarray(self.values @ SectionSplines(self.u).values(u).T)
 
     def parts(self, blade: Blade, space: ShapeSpace | None = None) -> dict[str, Array]:
         """Return what affine maps of sections, modes of a space and neither make of it, (k, n).
@@ -155,14 +223,21 @@ class DeviationMap:
 
         Its planes and axis stay; chord, twist, offsets and thickness are those of the new sections.
         """
-        eta, definition = self.eta, blade.definition
-        at = SectionSplines(self.u).values(blade.u) if len(self.u) != len(blade.u) else None
-        values = self.values if at is None else self.values @ at.T
+        if blade.mirrored:
+            return self.applied(blade.mirror_image()).mirror_image()
+        eta, definition, values = self.eta, blade.definition, self.at(blade.u)
         chord = blade.chord(eta)
         start = np.stack([-definition.offset_y(eta), definition.offset_x(eta)], axis=-1)
         profiles = blade.profiles(eta)
         points = chord[:, None, None] * profiles + start[:, None]
         points = points + values[..., None] * _normals(profiles)
+        folded = list(crossing_sections(points))
+        if folded:
+            at, deepest = eta[folded[0]], -1e3 * values[folded[0]].min()
+            raise BladegenError(
+                f"deviation: {deepest:.3g} mm inward is more than the section at eta = {at:.3f} "
+                "can take: it crosses itself; end it farther inboard, or make it less deep"
+            )
         curves = SectionSplines(blade.u).fit(points)
         lead, away = curves.leading_edge, curves.trailing_edge - curves.leading_edge
         turn = np.arctan2(away[:, 1], away[:, 0])
@@ -189,20 +264,11 @@ class DeviationMap:
         )
         X, M, b = affine.standardise(airfoils)
         loft = Loft(blade.u, eta, X, M, b, made.relative_thickness, blade.path)
-        return Blade(Shape(loft), replace(blade.planform, definition=made), blade.trailing_edge)
-
-
-def _between(start: float, end: float) -> None:
-    if not 0.0 <= start < end <= 1.0:
-        raise BladegenError(
-            f"erosion: start and end must rise within 0 to 1, got {start:g} and {end:g}"
-        )
-
-
-def _smooth(share: Array) -> Array:
-    """Return a C2 step from 0 to 1."""
-    step: Array = share * share * share * (10.0 - 15.0 * share + 6.0 * share * share)
-    return step
+        planform = replace(blade.planform, definition=made)
+        told = {"outward_mm": float(1e3 * values.max()), "inward_mm": float(-1e3 * values.min())}
+        changes = (*blade.changes, {"deviation": told})
+        worn = Blade(Shape(loft), planform, blade.trailing_edge, blade.findings, changes)
+        return worn.require_sound(allow_odd=True)
 
 
 def _normals(profiles: Array) -> Array:
@@ -210,13 +276,6 @@ def _normals(profiles: Array) -> Array:
     along = np.gradient(profiles, axis=1)
     normal = along[..., ::-1] * [1.0, -1.0]
     return np.asarray(normal / np.linalg.norm(normal, axis=-1, keepdims=True))
-
-
-def _arcs(blade: Blade, eta: Array) -> Array:
-    """Return arc lengths from the leading edge (k, n), over the chord, positive on either side."""
-    steps = np.linalg.norm(np.diff(blade.profiles(eta), axis=1), axis=-1)
-    arc = np.concatenate([np.zeros((len(eta), 1)), np.cumsum(steps, axis=1)], axis=1)
-    return np.asarray(np.abs(arc - arc[:, len(blade.u) // 2][:, None]))
 
 
 def _projected(basis: Array, values: Array) -> Array:

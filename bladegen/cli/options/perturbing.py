@@ -62,12 +62,34 @@ class Changes:
         bool,
         typer.Option("--allow-odd", help="Take sections with noses, tails or waves of no airfoil."),
     ] = False
+    deviation: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MAP.csv", help="Put a deviation on the skin that `check --deviation` wrote."
+        ),
+    ] = None
+    erosion: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FROM,TO,WIDTH,DEPTH",
+            help="Wear the leading edge off over a span, WIDTH of the chord along the arc, DEPTH "
+            "with its unit: 0.7,0.98,0.03,4mm.",
+        ),
+    ] = None
+    dent: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ETA,U,SIZE,DEPTH",
+            help="Dent the skin at a span fraction and place around the section (suction side's "
+            "trailing edge 0, leading edge 0.5): 0.5,0.2,600mm,10mm. Repeat for more.",
+        ),
+    ] = None
     name: Annotated[str | None, typer.Option(help="Of the perturbed blade and its files.")] = None
 
     @property
     def asked(self) -> bool:
         """Whether anything is to change."""
-        shape = bool(self.pga)
+        shape = bool(self.pga or self.deviation or self.erosion or self.dent)
         return shape or any(getattr(self, key) != getattr(Changes, key) for key in AFFINE)
 
     def shape_space(self) -> Any:
@@ -75,6 +97,20 @@ class Changes:
         from bladegen.shapes.shape_space import ShapeSpace
 
         return ShapeSpace.load(self.space) if self.space else ShapeSpace.bundled()
+
+    def on_the_skin(self, blade: Any) -> Any:
+        """Return wear and dents together, None if there are none."""
+        if not (self.deviation or self.erosion or self.dent):
+            return None
+        from bladegen.cli.options.skin import dented, eroded
+        from bladegen.fitting.deviations import DeviationMap
+
+        maps = [] if self.deviation is None else [DeviationMap.read(self.deviation)]
+        if self.erosion:
+            maps.append(DeviationMap.erosion(blade, **eroded(self.erosion)))
+        maps += [DeviationMap.dent(blade, **dented(text)) for text in self.dent or []]
+        first, *others = maps
+        return sum(others, first)
 
     def applied(self, blade: Any) -> Any:
         """Return the blade with the changes."""
@@ -93,6 +129,7 @@ class Changes:
             chord_line=self.chord_line,
             allow_extrapolation=self.allow_extrapolation,
             allow_odd=self.allow_odd,
+            deviation=self.on_the_skin(blade),
             name=self.name or f"{blade.name}-perturbed",
         )
 

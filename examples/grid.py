@@ -20,6 +20,8 @@ COLOURS = {
     "suction side": "#b9c6d2",
     "pressure side": "#dfe6ec",
     "trailing edge": "#d55e00",
+    "edge ring": "#e69f00",
+    "edge core": "#f0e442",
     "tip rim": "#0072b2",
     "tip core": "#8cc5e6",
 }

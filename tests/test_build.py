@@ -85,7 +85,9 @@ def test_grids_are_measured_in_the_report(tmp_path):
     assert grid["cells"] > 30_000
     assert grid["interface_gap_m"] == 0
     assert grid["worst_skewness"] < 0.7
-    assert report["settings"]["grid"]["around"] == 257
+    assert grid["largest_jump"] < 1.3
+    assert 0 < grid["spacing"]["tip"] < 1e-5
+    assert report["settings"]["grid"]["around"] == 289
     rows = dict(report_rows(report))
     assert rows["grid"] == f"{grid['cells']} cells in 5 blocks, which match point to point"
 

@@ -82,7 +82,8 @@ def test_build_makes_grids_as_asked_for(tmp_path):
         "around": 65, "along": 33, "edge": 6, "leading_edge": 0.004, "trailing_edge": 0.003,
         "tip": 0.001, "root": 0.02,
     }  # fmt: skip
-    assert report["grid"]["cells"] == 32 * (64 + 6) + 64 + 4 * 30
+    tip = 64 * 2 + 31 * 2 + 6 * 2 + 2 * 2  # rim and core, ring and core under its arc
+    assert report["grid"]["cells"] == 32 * (64 + 6) + tip
     refused = run("build", "nrel5mw", "-o", tmp_path, "--format", "p3d", "--le-spacing", 0.5)
     assert "leading-edge spacing: got 0.5, allowed is" in str(refused.exception)
 

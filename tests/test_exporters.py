@@ -176,7 +176,7 @@ def test_sections_by_suffix(blade, tmp_path):
 
 
 def test_a_round_tip_is_on_meshes_and_grids_alike(blade):
-    spacing = Spacing(around=33, along=9, edge=4, leading_edge=0.02, trailing_edge=0.02, root=0.1)
+    spacing = Spacing(around=33, along=9, edge=8, leading_edge=0.02, trailing_edge=0.02, root=0.1)
     options = Options(stations=20, tip=round_tip, spacing=spacing)
     products = Products(blade, options)
     tops = [products.mesh.vertices[:, 2].max()]

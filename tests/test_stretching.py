@@ -43,7 +43,7 @@ def test_cells_grow_and_shrink_once_and_slowly(cells, first, last):
 
 
 def test_slopes_are_those_of_the_paper():
-    points = vinokur(100_000, 1e-7, 4e-6)
+    points = vinokur(100_000, np.array([1e-7]), np.array([4e-6]))[0]
     slopes = np.diff(points)[[0, -1]]
     assert_allclose(slopes, [1e-7, 4e-6], rtol=1e-3)
 

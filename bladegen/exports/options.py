@@ -134,7 +134,8 @@ class Options:
                 told = {"author": self.author, "organisation": self.organisation}
                 found |= {key: word(value) for key, value in told.items() if value}
         if kind is Kind.grid:
-            found |= {f"grid_{key}": word(value) for key, value in asdict(self.spacing).items()}
+            spacing = asdict(self.spacing).items()
+            found |= {f"grid_{k}": "coupled" if v is None else word(v) for k, v in spacing}
         if kind in (Kind.triangles, Kind.table):
             found["stations"] = word(self.stations)
         if kind in (Kind.solid, Kind.triangles, Kind.grid):  # which curves end before

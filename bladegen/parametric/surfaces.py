@@ -18,8 +18,8 @@ from bladegen.support.arguments import shown
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface import mesh
 from bladegen.surface.grids import blocks
-from bladegen.surface.grids.caps import Layout, layout
-from bladegen.surface.grids.grid import Spacing
+from bladegen.surface.grids.coupling import coupled
+from bladegen.surface.grids.spacing import Spacing
 from bladegen.surface.tips import SPANS, Tip, ends, flat_tip, on_arcs, round_tip, round_tip_slopes
 
 __all__ = ["GridModel", "MeshModel"]
@@ -150,28 +150,33 @@ class GridModel:
     tip: Tip
 
     @cached_property
+    def _spacing(self) -> Spacing:
+        return coupled(self.spacing, self.model.blade, self.tip)
+
+    @cached_property
     def _sides(self) -> SectionModel:
-        spacing = self.spacing
+        spacing = self._spacing
         return self.model.at(spacing.spans(self.model.blade), spacing.parameters())
 
     @cached_property
-    def _layout(self) -> tuple[Layout, TipModel, bool]:
-        """The cap's layout and tip, and whether the trailing edge is blunt, of the baseline."""
-        sections, u = self._sides.sections(self.model.baseline), self.spacing.parameters()
+    def _frame(self) -> tuple[blocks.Frame, TipModel]:
+        """Where points lie, and the tip, of the baseline."""
+        x, u = self.model.baseline, self._spacing.parameters()
+        sections = self._sides.sections(x)
         blunt = blocks.is_blunt(self.model.blade.name, sections)
-        placed = layout(sections[-1], u, self.spacing.edge, flat=self.tip is flat_tip)
-        return placed, TipModel(self.model.at(SPANS, placed.places[0]), self.tip), blunt
+        if not blunt:
+            sections[:, -1] = sections[:, 0]
+        poles = TipModel(self.model.at(SPANS, u), self.tip).points(x)[1]
+        made = blocks.frame(sections, u, self.spacing.edge, poles, blunt=blunt)
+        return made, TipModel(self.model.at(SPANS, made.places), self.tip)
 
     def _made(
         self, sections: Array, ended: Callable[[TipModel], tuple[Array, Array | None]]
     ) -> list[blocks.Block]:
-        placed, end, blunt = self._layout
-        if not blunt:
+        frame, end = self._frame
+        if frame.edge is None:
             sections[:, -1] = sections[:, 0]
-        rim, core = placed.points(*ended(end))
-        over = placed.cap(sections[-1], rim, core, sharp=not blunt)
-        sides = self._sides
-        return blocks.blocks_of(sections, over, sides.eta, self.spacing.parameters(), blunt=blunt)
+        return frame.blocks(sections, ended(end), self._sides.eta, self._spacing.parameters())
 
     def __call__(self, x: Array) -> tuple[Array, ...]:
         """Return the points (ni, nj, 3) of its blocks at a vector (p,)."""

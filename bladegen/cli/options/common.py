@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -103,15 +104,10 @@ Mirror = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-SideSpacing = Annotated[
-    float,
-    typer.Option(
-        help="Cell at that edge over the side's length, about the chord.", rich_help_panel=GRIDS
-    ),
-]
-SpanSpacing = Annotated[
-    float, typer.Option(help="Cell at that end over the length.", rich_help_panel=GRIDS)
-]
+SIDE = "Cell at that edge over the side's length, about the chord."
+SPAN = "Cell at that end over the length."
+_spacing = partial(typer.Option, rich_help_panel=GRIDS)
+_coupled = partial(_spacing, show_default="as high as those beyond the block's edge")
 Polars = Annotated[
     str | None,
     typer.Option(
@@ -228,17 +224,20 @@ class Producing:
     ] = ""
     grid_around: Annotated[
         int, typer.Option(help="Points around a section, odd.", rich_help_panel=GRIDS)
-    ] = 257
+    ] = 289
     grid_along: Annotated[
         int, typer.Option(help="Points from root to tip.", rich_help_panel=GRIDS)
-    ] = 129
+    ] = 165
     grid_edge: Annotated[
-        int, typer.Option(help="Cells across the trailing edge, even.", rich_help_panel=GRIDS)
-    ] = 8
-    le_spacing: SideSpacing = 1e-3
-    te_spacing: SideSpacing = 1e-3
-    tip_spacing: SpanSpacing = 2e-4
-    root_spacing: SpanSpacing = 0.01
+        int,
+        typer.Option(
+            help="Cells across the trailing edge and the tip, even.", rich_help_panel=GRIDS
+        ),
+    ] = 72
+    le_spacing: Annotated[float, _spacing(help=SIDE)] = 1e-3
+    te_spacing: Annotated[float | None, _coupled(help=SIDE)] = None
+    tip_spacing: Annotated[float | None, _coupled(help=SPAN)] = None
+    root_spacing: Annotated[float, _spacing(help=SPAN)] = 0.008
     element: Element = "1m"
     laminates: Laminates = False
     polars: Polars = None

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from bladegen.support.arrays import Array, Indices
-from bladegen.surface.grids.grid import Block, Corner, Grid, Interface
+from bladegen.surface.grids.grid import Block, Grid
+from bladegen.surface.grids.interfaces import Corner, Interface
 from bladegen.surface.vtk_files import save
 
 __all__ = [

@@ -7,6 +7,7 @@ is how many times as long one cell is as its neighbour along i or j in the same 
 two blocks differ by is in `joints`.  Metres.
 """
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,7 @@ def grid_figures(grid: Grid) -> dict[str, Any]:
         ],
         "largest_stretching": max(figures["largest_stretching"] for figures in blocks.values()),
         **jump_figures(grid),
+        "spacing": asdict(grid.spacing),
         "leading_edge_cell_of_side": leading,
         "trailing_edge_cell_of_side": trailing,
         "tip_cell_m": _range([_tip_cells(grid)]),

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from bladegen.support.arrays import Array
-from bladegen.surface.grids.grid import Block, Corner, Grid, Interface
+from bladegen.surface.grids.grid import Block, Grid
+from bladegen.surface.grids.interfaces import Corner, Interface
+from bladegen.surface.grids.measuring import away
 
 __all__ = ["heights", "jump_figures", "jumps"]
 
@@ -33,13 +35,10 @@ def jumps(grid: Grid, interface: Interface) -> Array:
 def heights(grid: Grid, interface: Interface) -> tuple[Array, Array]:
     """Return the heights (m,) [m] of both blocks' first cells, normal to an interface."""
     edge, _ = grid.along(interface)
-    way = np.gradient(edge, axis=0)
-    length = np.linalg.norm(way, axis=-1, keepdims=True)
-    way = np.divide(way, length, out=np.zeros_like(way), where=length > 0.0)
     own = _next(grid.blocks[interface.block], interface.start, interface.stop)
     other = _next(grid.blocks[interface.donor], interface.donor_start, interface.donor_stop)
 
-    return _away(own - edge, way), _away(other - edge, way)
+    return away(own - edge, edge), away(other - edge, edge)
 
 
 def jump_figures(grid: Grid) -> dict[str, Any]:
@@ -70,10 +69,3 @@ def _next(block: Block, start: Corner, stop: Corner) -> Array:
     first, last = sorted((start[axis], stop[axis]))
     kept: Array = line[first : last + 1][::sense]
     return kept
-
-
-def _away(step: Array, way: Array) -> Array:
-    """Return the lengths (m,) of steps (m, 3) normal to unit vectors."""
-    normal = step - way * np.sum(way * step, axis=-1, keepdims=True)
-    length: Array = np.linalg.norm(normal, axis=-1)
-    return length

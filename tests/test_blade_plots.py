@@ -4,7 +4,8 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen.cli.view import What
-from bladegen.plots import blade_plots, path_plot
+from bladegen.errors import ExportError
+from bladegen.plots import blade_plots, layup_plot, path_plot
 from bladegen.shapes import grassmann
 
 
@@ -112,3 +113,29 @@ def test_figures_name_the_blade_and_touch_no_global_state(name, blade, variant):
     assert "NREL 5 MW, perturbed: changed" in drawn.get_suptitle()
     assert all(axis.get_ylabel() for axis in drawn.axes)
     assert pyplot.get_fignums() == before
+
+
+def polygon(patch):
+    x, y = patch.get_xy().T
+    return 0.5 * abs(np.dot(x, np.roll(y, 1)) - np.dot(y, np.roll(x, 1)))
+
+
+def test_layers_are_drawn_as_thick_and_as_wide_as_they_are(blade):
+    drawn = blade_plots.layup(blade)
+    strips, *rows = drawn.axes
+    assert {web.name for web in blade.definition.structure.webs} <= {
+        text.get_text().strip() for text in strips.texts
+    }
+    laid = blade.layup.at(np.array(layup_plot.SHOWN))
+    for k, pair in enumerate(zip(rows[::2], rows[1::2], strict=True)):
+        areas = [sum(map(polygon, axis.patches)) for axis in pair]
+        own = float((laid.width * laid.thickness)[:, k].sum())
+        assert_allclose(areas[0], own, rtol=0.05)  # they are shorter inside of the skin
+        assert_allclose(areas[1], layup_plot.TIMES * own, rtol=0.2)
+
+
+def test_a_blade_without_layers_is_not_drawn_with_any():
+    bare = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=101)
+    assert "layup" not in blade_plots.drawable(bare)
+    with pytest.raises(ExportError, match="has no webs and layers to be drawn"):
+        blade_plots.layup(bare)

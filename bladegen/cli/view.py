@@ -42,6 +42,7 @@ class What(StrEnum):
     path = "path"
     curvature = "curvature"
     thickness = "thickness"
+    layup = "layup"
     combs = "combs"
     all = "all"
 
@@ -255,17 +256,17 @@ def plot(
 ) -> None:
     """Draw diagrams of a blade.
 
-    Planform, sections, path on the Grassmannian, curvature, thickness, and its airfoils' combs.
-
-    A perturbed blade is drawn over its baseline.
+    Planform, sections, path on the Grassmannian, curvature, thickness, layers and webs, and its
+    airfoils' combs. A perturbed blade is drawn over its baseline.
     """
     from bladegen.exports.marks import marked
-    from bladegen.plots.blade_plots import PLOTS
+    from bladegen.plots.blade_plots import PLOTS, drawable
     from bladegen.plots.figures import SUFFIXES, save_figure, save_pages
     from bladegen.support.files import folder, require_suffix, safe_stem
 
     wanted = list(dict.fromkeys(what or [What.all]))
-    chosen = list(PLOTS) if What.all in wanted else [one.value for one in wanted]
+    shown, baseline = _shown(making.blade(blade, landmarks), changes, mirror)
+    chosen = drawable(shown) if What.all in wanted else [one.value for one in wanted]
     single = output.suffix.lower() in SUFFIXES or (bool(output.suffix) and not output.is_dir())
     if single:
         require_suffix(output, SUFFIXES if kind is None else (f".{kind}",), "--output")
@@ -274,7 +275,6 @@ def plot(
             f"output: got {output} for {len(chosen)} diagrams, must be a folder or a .pdf; or "
             "choose one with --what"
         )
-    shown, baseline = _shown(making.blade(blade, landmarks), changes, mirror)
     with progress_bar() as progress:
         if single and output.suffix.lower() == ".pdf":
             progress("drawing")

@@ -15,12 +15,13 @@ from bladegen.curves.sides import sides
 from bladegen.measures.spanwise import LINES, spanwise
 from bladegen.plots import combs
 from bladegen.plots.figures import dress, figure, figure_of, pair, shade, titled
+from bladegen.plots.layup_plot import layup
 from bladegen.plots.path_plot import path
 from bladegen.plots.style import BASELINE, INK, VARIANT
 from bladegen.shapes import affine
 from bladegen.support.arrays import Array
 
-__all__ = ["PLOTS", "Plot", "overview"]
+__all__ = ["PLOTS", "Plot", "drawable", "overview"]
 
 SPANS = 401  # points of a curve over the span
 CURVED = (0.15, 0.3, 0.5, 0.7, 0.9)  # span fractions of the curvature's sections
@@ -183,8 +184,14 @@ PLOTS = {
     "path": Plot("distances and normal coordinates on the Grassmannian over the span", path),
     "curvature": Plot("curvature along sections", curvature),
     "thickness": Plot("thickness over the span, thickness and camber along sections", thickness),
+    "layup": Plot("layers and webs over the span and on sections", layup),
     "combs": Plot("curvature combs of the airfoils, as given and as faired", combs.drawing),
 }
+
+
+def drawable(blade: Blade) -> list[str]:
+    """Return the names of the plots that a blade has something for."""
+    return [name for name in PLOTS if name != "layup" or blade.layup is not None]
 
 
 def _over_span(

@@ -73,7 +73,7 @@ def test_preview_writes_sweeps(small, tmp_path):
         (["preview", "nrel5mw", "--gif", "a.gif", "--sweep", "t1"], "sweep: got 't1', must be"),
         (["preview", "nrel5mw", "--compare", "a", "b"], "compare: takes two"),
         (["preview", "nrel5mw", "--screenshot", "a.png", "--colour", "distance"], "a baseline"),
-        (["plot", "nrel5mw", "-o", "a.png"], "for 6 diagrams, must be a folder or a .pdf"),
+        (["plot", "nrel5mw", "-o", "a.png"], "for 7 diagrams, must be a folder or a .pdf"),
         (["plot", "nrel5mw", "-o", "a.bmp"], "suffix '.bmp', allowed are .png, .svg, .pdf"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",

@@ -416,3 +416,49 @@ def test_a_family_with_its_graph(planned, tmp_path):
         run(Order(same, tmp_path / "plain", graph=True), append=True)
     run(Order(same, tmp_path / "graph", graph=True), append=True)
     assert bg.load_family(tmp_path / "graph")["normals"].shape[0] == 5
+
+
+def test_conditions_choose_the_variants_that_fulfil_them(folder):
+    family = bg.load_family(folder)
+    volume, t1 = family["volume"][:], family["t1"][:]
+    middle = float(np.median(volume))
+    found = family.where(f"volume > {middle!r} and t1 <= 0.01")
+    assert_array_equal(found, np.flatnonzero((volume > middle) & (t1 <= 0.01)))
+    assert_array_equal(family.where("valid == true"), np.flatnonzero(family.valid))
+    assert_array_equal(family.where("volume<0"), [])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("volme > 3", "no 'volme' of a variant, but .* did you mean volume"),
+        ("volume", "got 'volume', must be NAME, one of"),
+        ("volume > big", "and a number, such as"),
+        ("__import__('os') > 3", "must be NAME"),
+        ("", "got '', must be NAME"),
+    ],
+)
+def test_what_is_no_condition_is_a_line(text, said, folder):
+    with pytest.raises(FamilyError, match=said):
+        bg.load_family(folder).where(text)
+
+
+def test_info_of_a_folder_says_what_is_in_it(folder):
+    result = CliRunner().invoke(
+        commands.app, ["info", str(folder), "--where", "volume > 0", "--json"]
+    )
+    assert result.exit_code == 0, result.output
+    told, family = json.loads(result.output), bg.load_family(folder)
+    assert [told[key] for key in ("blade", "variants")] == ["nrel5mw", COUNT]
+    assert told["sound"] == int(family.valid.sum())
+    assert sum(told["splits"].values()) == COUNT
+    volume = told["ranges"]["volume"]
+    assert volume["unit"] == "m3"
+    own = family["volume"][:][family.valid]
+    found = [volume[key] for key in ("least", "mean", "largest", "deviation")]
+    assert_allclose(found, [own.min(), own.mean(), own.max(), own.std()])
+    assert told["fulfilled_by"] == family.where("volume > 0").tolist()
+    result = CliRunner().invoke(commands.app, ["info", str(folder), "--where", "volume > 0"])
+    assert f"{len(told['fulfilled_by'])} of {COUNT}: volume > 0" in result.output
+    result = CliRunner().invoke(commands.app, ["info", "nrel5mw", "--where", "volume > 0"])
+    assert "is for a family's folder, which nrel5mw is not" in str(result.exception)

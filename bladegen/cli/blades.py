@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["info", "list_blades"]
 
+SHOWN = 20  # variants of a family that fulfil conditions
 FACTS = ("blade", "source", "sha256", "definition", "command")
 
 
@@ -40,20 +41,34 @@ def info(
         str,
         typer.Argument(
             metavar="BLADE",
-            help="A bundled blade's name, a definition's file, or any file that bladegen wrote.",
+            help="A bundled blade's name, a definition's file, any file that bladegen wrote, or a "
+            "family's folder.",
         ),
     ],
     airfoils: Airfoils = None,
+    where: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CONDITIONS",
+            help="Of a family: which variants fulfil them, 'volume > 600 and t1 < 0.1'.",
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Show what a blade's definition holds.
 
-    Of any file that bladegen wrote it shows what it is made from.
+    Of any file that bladegen wrote it shows what it is made from; of a family's folder, what is
+    in it and how it spreads.
     """
     from bladegen.formats.reading import holds_blade, is_read, read
     from bladegen.views.tables import definition_figures, station_rows
 
     path = Path(blade)
+    if path.is_dir() and (path / "family.json").is_file():
+        _print_family(path, where, as_json)
+        return
+    if where is not None:
+        raise BladegenError(f"where: is for a family's folder, which {blade} is not; leave it out")
     made = None if blade in bundled() or not path.is_file() else _made_by(path)
     if made is not None and not (is_read(path) and holds_blade(path)):
         _print_making(blade, made, as_json)
@@ -113,3 +128,31 @@ def _print_making(file: str, made: Any, as_json: bool) -> None:
         typer.echo(json.dumps({"file": file, "made_from": facts}, indent=2))
     else:
         print_figures(f"{file}: what it is made from", facts)
+
+
+def _print_family(path: Path, where: str | None, as_json: bool) -> None:
+    """Print what a family holds, and which of its variants fulfil conditions."""
+    from bladegen.families.dataset.loading import load_family
+    from bladegen.families.dataset.summary import figures
+
+    family = load_family(path)
+    found = figures(family)
+    places = None if where is None else family.where(where)
+    if as_json:
+        found |= {} if places is None else {"where": where, "fulfilled_by": places.tolist()}
+        typer.echo(json.dumps(found, indent=2))
+        return
+    said = {k: v for k, v in found.items() if not isinstance(v, dict)}
+    said["splits"] = ", ".join(f"{name} {count}" for name, count in found["splits"].items())
+    said["megabytes"] = f"{found['megabytes']:.1f}"
+    print_figures(f"family of {found['blade']}", said)
+    head = ["least", "mean", "largest", "deviation"]
+    ranges = found["ranges"].items()
+    rows = [[name, own["unit"], *(f"{own[one]:.5g}" for one in head)] for name, own in ranges]
+    print_table(["of sound variants", "unit", *head], rows)
+    if places is None:
+        return
+    shown = [[str(k), str(family["name"][k])] for k in places[:SHOWN].tolist()]
+    print_table(["variant", "name"], shown, title=f"{len(places)} of {len(family)}: {where}")
+    if len(places) > SHOWN:
+        typer.echo(f"and {len(places) - SHOWN} more; --json gives all")

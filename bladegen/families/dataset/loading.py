@@ -18,6 +18,7 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import FamilyError, MissingLibraryError, PlaceError
 from bladegen.families.dataset.graphs import edges, surface, triangles
 from bladegen.families.dataset.replanning import planned_again
+from bladegen.families.dataset.selecting import matching, numbers
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
 from bladegen.families.dataset.store import column_values, opened
 from bladegen.families.dataset.variables import parameter, variables
@@ -75,10 +76,10 @@ class LoadedFamily:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of all arrays."""
-        return tuple(dict.fromkeys([*self.store.array_keys(), *self._columns]))
+        return tuple(dict.fromkeys([*self.store.array_keys(), *self.columns]))
 
     @cached_property
-    def _columns(self) -> dict[str, str]:
+    def columns(self) -> dict[str, str]:
         """Columns of the manifest by the names of their arrays."""
         import pyarrow.parquet as pq
 
@@ -118,11 +119,11 @@ class LoadedFamily:
     def _array(self, name: str) -> Any:
         if name in self.store:
             return self.store[name]
-        if name in self._columns:
+        if name in self.columns:
             import pyarrow.parquet as pq
 
             with pq.ParquetFile(self.path / "manifest.parquet") as file:
-                return column_values(file.read([self._columns[name]]).column(0))
+                return column_values(file.read([self.columns[name]]).column(0))
         near = suggestion(name, self.names)
         raise FamilyError(f"{self.path}: holds no {name!r}, but {', '.join(self.names)}{near}")
 
@@ -137,6 +138,18 @@ class LoadedFamily:
 
         with pq.ParquetFile(self.path / "manifest.parquet") as file:
             return file.read()
+
+    @cached_property
+    def numbers(self) -> dict[str, Array]:
+        """What each variant has one number of: factors, volume, labels; (variants,) by name."""
+        return numbers(self.table(), self.columns)
+
+    def where(self, conditions: str) -> Indices:
+        """Return the places of the variants that fulfil conditions on `numbers`, in order.
+
+        >>> family.where("volume > 600 and thickness_change < 1.02")  # doctest: +SKIP
+        """
+        return np.flatnonzero(matching(self.numbers, conditions))
 
     def split(
         self,

@@ -1,0 +1,85 @@
+"""Conditions on the variants of a family, as people write them: thickness < 0.3 and volume > 600.
+
+A condition is ``NAME OP NUMBER``; several are joined by ``and``.  Nothing is evaluated but that.
+"""
+
+import operator
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from bladegen.errors import FamilyError
+from bladegen.support.arguments import suggestion
+from bladegen.support.arrays import Array, Mask
+
+__all__ = ["matching", "numbers"]
+
+OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+    "!=": operator.ne,
+}
+CONDITION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_]*)\s*(<=|>=|==|!=|<|>)\s*(\S+)\s*")
+AND = re.compile(r"\s+and\s+|\s*&&?\s*|\s*,\s*")
+
+
+def numbers(table: Any, columns: dict[str, str]) -> dict[str, Array]:
+    """Return the columns (by the names of their arrays) of a manifest that hold a number a row."""
+    import pyarrow as pa
+
+    found = {}
+    for name, column in columns.items():
+        kind = table.schema.field(column).type
+        if pa.types.is_boolean(kind) or pa.types.is_integer(kind) or pa.types.is_floating(kind):
+            values = table.column(column).combine_chunks().to_numpy(zero_copy_only=False)
+            found[name] = np.asarray(values, dtype=np.float64)
+    return found
+
+
+def matching(values: dict[str, Array], text: str) -> Mask:
+    """Return which variants fulfil all conditions of a text, (variants,).
+
+    Parameters
+    ----------
+    values : dict of (variants,) arrays
+        What conditions may name.
+    text : str
+        Such as ``thickness_change < 1.02 and volume > 600``.
+
+    Raises
+    ------
+    FamilyError
+        If it is no condition, or names something else.
+    """
+    held: Mask | None = None
+    for part in AND.split(text.strip()):
+        match = CONDITION.fullmatch(part)
+        number = None if match is None else _number(match[3])
+        if match is None or number is None:
+            raise FamilyError(
+                f"where: got {part!r}, must be NAME, one of {' '.join(OPERATORS)}, and a number, "
+                "such as 'volume > 600 and valid == true'"
+            )
+        name = match[1]
+        if name not in values:
+            raise FamilyError(
+                f"where: there is no {name!r} of a variant, but {', '.join(values)}"
+                f"{suggestion(name, values)}"
+            )
+        fulfilled = np.asarray(OPERATORS[match[2]](values[name], number), dtype=bool)
+        held = fulfilled if held is None else held & fulfilled
+    return np.asarray(held)
+
+
+def _number(word: str) -> float | None:
+    if word.lower() in ("true", "false"):
+        return float(word.lower() == "true")
+    try:
+        return float(word)
+    except ValueError:
+        return None

@@ -88,8 +88,8 @@ def test_a_manifests_columns_are_in_the_dataset(folder):
     table = pq.read_table(folder / "manifest.parquet")
     family = bg.load_family(folder)
     assert family.table().equals(table)
-    assert set(family._columns.values()) == set(table.column_names) - {"seed"}
-    for name, column in family._columns.items():
+    assert set(family.columns.values()) == set(table.column_names) - {"seed"}
+    for name, column in family.columns.items():
         stored, wanted = np.asarray(family[name][:]), table[column].to_pylist()
         assert stored.tolist() == wanted, name
 

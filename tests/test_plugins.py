@@ -1,8 +1,5 @@
 """Packages of others add formats by entry points, and break nothing if they are broken."""
 
-import subprocess
-import sys
-
 import pytest
 
 MODULE = """
@@ -70,7 +67,7 @@ toys = toys:EXPORTS
 
 
 @pytest.fixture
-def run(tmp_path):
+def run(tmp_path, command):
     """Run code, or a command, where the package of toys is installed."""
     site = tmp_path / "site"
     info = site / "toys-1.0.dist-info"
@@ -82,22 +79,17 @@ def run(tmp_path):
         (info / "entry_points.txt").write_text(ENTRIES.format(readers=readers, exporters=exporters))
         code = f"import sys; sys.path.insert(0, {str(site)!r}); sys.argv[0] = 'bladegen'\n"
         begin = "from bladegen.cli.commands import main; main()"
-        code += arguments[0] if len(arguments) == 1 else begin
-        done = subprocess.run(
-            [sys.executable, "-c", code, *arguments[1:]],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == status, done.stderr
-        assert "Traceback" not in done.stderr
-        return done.stdout + done.stderr
+        script = tmp_path / "script.py"
+        script.write_text(code + (arguments[0] if len(arguments) == 1 else begin))
+        done = command(*arguments[1:], script=str(script), folder=str(tmp_path))
+        assert done["status"] == status, done["err"]
+        assert "Traceback" not in done["err"]
+        return done["out"] + done["err"]
 
     return run
 
 
-def command(run, words, **options):
+def said_by(run, words, **options):
     return run("bladegen", *words.split(), **options)
 
 
@@ -115,25 +107,25 @@ def test_functions_find_formats_of_others(run, tmp_path):
 
 def test_commands_and_lists_find_formats_of_others(run, tmp_path):
     (tmp_path / "a.toy").write_text("toy nrel5mw")
-    assert "Toy of a blade" in command(run, "convert a.toy b.toy")
-    assert "windIO 2" in command(run, "convert b.toy b.yaml")
-    command(run, "build a.toy -o out --format points,csv --landmarks 41 --stations 20")
+    assert "Toy of a blade" in said_by(run, "convert a.toy b.toy")
+    assert "windIO 2" in said_by(run, "convert b.toy b.yaml")
+    said_by(run, "build a.toy -o out --format points,csv --landmarks 41 --stations 20")
     assert {"nrel5mw.points", "nrel5mw.csv"} <= {path.name for path in (tmp_path / "out").iterdir()}
-    said = command(run, "formats")
+    said = said_by(run, "formats")
     assert ".toy" in said
     assert ".points" in said
     (tmp_path / "a.toys").write_text("toy nrel5mw")
-    assert ".toy" in command(run, "info a.toys", status=1).split("allowed are .yaml,")[1]
-    assert ".toy, or none" in command(run, "convert a.toy b.toys", status=1)
-    assert ".points" in command(run, "build a.toy -o out --format toys", status=1)
+    assert ".toy" in said_by(run, "info a.toys", status=1).split("allowed are .yaml,")[1]
+    assert ".toy, or none" in said_by(run, "convert a.toy b.toys", status=1)
+    assert ".points" in said_by(run, "build a.toy -o out --format toys", status=1)
 
 
 def test_own_formats_load_no_plugins_and_are_not_hidden(run, tmp_path):
-    said = command(run, "convert nrel5mw a.yaml")
+    said = said_by(run, "convert nrel5mw a.yaml")
     assert "toys are loaded" not in said
     assert "windIO 2" in said
     (tmp_path / "b.yaml").write_text("toy nrel5mw")
-    assert "windIO" in command(run, "info b.yaml", status=1)
+    assert "windIO" in said_by(run, "info b.yaml", status=1)
     said = run(
         "import bladegen as bg\n"
         "blade = bg.Blade.from_definition(bg.read('nrel5mw'), landmarks=41)\n"
@@ -163,7 +155,7 @@ def test_what_a_plugin_cannot_read_or_write_is_one_line(run):
         "problem",
         "a.toy: holds no blade that is known, must hold the word toy (Toy)",
     ]
-    said = command(run, "build nrel5mw -o out --format broken --landmarks 41", status=1)
+    said = said_by(run, "build nrel5mw -o out --format broken --landmarks 41", status=1)
     assert said.splitlines()[-1] == "bladegen: plug-in toys: KeyError: 'of mine'"
 
 
@@ -177,11 +169,11 @@ def test_broken_plugins_are_named_where_they_may_be_missed(run, tmp_path):
         "plug-in b (toys:NOTHING) is not used: AttributeError: module 'toys' has no attribute",
         "plug-in c (toys:NO_ROW) is not used: TypeError: got a int, must be a bladegen.",
     ]
-    assert "nrel5mw" in command(run, "info a.toy", **broken)
+    assert "nrel5mw" in said_by(run, "info a.toy", **broken)
     for words in ("info a.toys", "convert nrel5mw a.toys", "build nrel5mw -o out --format toys"):
-        lines = command(run, words, status=1, **broken).splitlines()
+        lines = said_by(run, words, status=1, **broken).splitlines()
         assert len(lines) == 2
         assert all(fault in lines[1] for fault in faults)
-    said = " ".join(command(run, "formats", **broken).split())
+    said = " ".join(said_by(run, "formats", **broken).split())
     assert all(said.count(fault) == 2 for fault in faults)
     assert "plug-in d (toys:UNPLACED) is not used: ExportError: suffix: got ''" in said

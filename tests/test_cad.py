@@ -10,7 +10,6 @@ from bladegen.blade.edges import AsGiven, Sharp
 from bladegen.cad import exchange, shapes, solids
 from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import CadError
-from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.measures import properties
 from bladegen.measures.checks import solid_figures
@@ -19,7 +18,11 @@ from bladegen.surface.tips import round_tip
 FACES = ["suction side", "pressure side", "trailing edge", "root", "tip"]
 
 
-@pytest.fixture(scope="module", params=bundled())
+# at night the DTU 10 MW too, whose solids other tests make
+SLOW = [pytest.param("dtu10mw", marks=pytest.mark.nightly)]
+
+
+@pytest.fixture(scope="module", params=["iea15mw", "nrel5mw", *SLOW])
 def blade(request):
     return Blade.from_definition(read(request.param))
 

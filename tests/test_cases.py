@@ -336,8 +336,10 @@ def test_openfoam_takes_the_mesh_and_its_lift_is_that_of_neuralfoil(tmp_path, na
 
     made = section_case(blade(name), eta, alpha=np.radians(4.0), cells=384, y_plus=3.0)
     made.write(tmp_path / "case")
+    (tmp_path / "case" / "2024-notes").touch()  # is no time of a run
     environment = {**os.environ, "WM_PROJECT_DIR": os.environ.get("WM_PROJECT_DIR", DEBIAN)}
     subprocess.run([tmp_path / "case" / "Allrun"], env=environment, check=True)
+    assert (tmp_path / "case" / "2024-notes").is_file()
     assert "Mesh OK." in (tmp_path / "case" / "log.checkMesh").read_text()
     results = tmp_path / "case" / "postProcessing"
     history = table(results / "forces" / "0" / "coefficient.dat")

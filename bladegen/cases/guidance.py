@@ -73,7 +73,7 @@ checkMesh
 simpleFoam    # {end} iterations at most; ends earlier once residuals have fallen
 ```
 
-`./Allrun 4` does it in four processes.
+`./Allrun 4` does it in four processes. Allrun begins anew: it removes the results of earlier runs.
 
 ## What comes out
 
@@ -106,7 +106,8 @@ command -v simpleFoam > /dev/null || {{
     echo "Allrun: no simpleFoam on the path; install OpenFOAM, or source its etc/bashrc" >&2
     exit 1
 }}
-rm -rf [1-9]* processor* postProcessing log.*
+foamListTimes -rm
+rm -rf processor* postProcessing log.*
 checkMesh > log.checkMesh
 if [ "$count" -gt 1 ]; then
     {{

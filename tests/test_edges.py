@@ -52,6 +52,16 @@ def test_sharp_edges_are_closed_and_meet_only_there(xy):
     assert_allclose(finished[0], finished[-1], atol=1e-15)
 
 
+@given(airfoils(), st.floats(-1e-4, 1e-4), st.floats(-1e-4, 0.0))
+def test_ends_beside_or_past_each_other_meet_in_a_sharp_edge(xy, behind, apart):
+    profile = landmarks(xy, 401)[None].copy()
+    profile[0, -1] = profile[0, 0] + [behind, -apart]
+    finished = Sharp()(profile, np.array([1.0]))[0]
+    assert_allclose(finished[0], profile[0, [0, -1]].mean(axis=0), atol=1e-15)
+    assert_allclose(finished[0], finished[-1], atol=1e-15)
+    assert_allclose(finished[1:-1], profile[0, 1:-1], atol=1e-15)
+
+
 @given(airfoils(), st.floats(0.001, 0.02), st.floats(0.05, 0.9), st.floats(0.82, 0.98))
 def test_a_tail_thinner_than_its_edge_is_closed_without_crossing(xy, edge, waist, at):
     profile = landmarks(xy, 401)[None].copy()

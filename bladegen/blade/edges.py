@@ -151,6 +151,7 @@ class Sharp:
         ahead = np.maximum(middle[:, :1, 0] - middle[..., 0], 0.0) / (1.0 - WINDOW[1])
         closed = _above(height - edge * window, LEAST_WEDGE * edge * window * ahead)
         share = np.divide(closed, height, out=np.ones_like(height), where=height > 0)
+        share[:, 0] = 0.0  # ends side by side, or past each other, meet too
         return _joined(profiles, half * share[..., None], middle)
 
 

@@ -50,7 +50,10 @@ def finished(points: Array, kind: int, width: float, slopes: Array) -> float:
             y[i] = level + raised
             y[-1 - i] = level - raised
             continue
-        share = closed_share(s, half, max(0.5 * gap, 0.0), weight, rate, rear - middle)
+        if i == 0:
+            s[0] = share = 0.0  # ends meet, however they lie to each other
+        else:
+            share = closed_share(s, half, max(0.5 * gap, 0.0), weight, rate, rear - middle)
         s[5], s[6] = 0.5 * (x[i] - x[-1 - i]), half
         across = s[5] * share
         x[i], x[-1 - i] = middle + across, middle - across

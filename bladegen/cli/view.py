@@ -44,6 +44,7 @@ class What(StrEnum):
     thickness = "thickness"
     layup = "layup"
     combs = "combs"
+    grid = "grid"
     all = "all"
 
 

@@ -15,6 +15,7 @@ from bladegen.curves.sides import sides
 from bladegen.measures.spanwise import LINES, spanwise
 from bladegen.plots import combs
 from bladegen.plots.figures import dress, figure, figure_of, pair, shade, titled
+from bladegen.plots.grid_plot import grid
 from bladegen.plots.layup_plot import layup
 from bladegen.plots.path_plot import path
 from bladegen.plots.style import BASELINE, INK, VARIANT
@@ -186,6 +187,7 @@ PLOTS = {
     "thickness": Plot("thickness over the span, thickness and camber along sections", thickness),
     "layup": Plot("layers and webs over the span and on sections", layup),
     "combs": Plot("curvature combs of the airfoils, as given and as faired", combs.drawing),
+    "grid": Plot("the structured grid's cells at flat and round tips, by scaled Jacobian", grid),
 }
 
 

@@ -39,7 +39,11 @@ def vector():
     return model().baseline + 0.02 * rng.normal(size=len(model().names))
 
 
-@pytest.mark.parametrize(("split", "matrix_free"), [(True, None), (False, False)])
+NIGHTLY = pytest.mark.nightly
+OTHERS = [pytest.param(False, None, marks=NIGHTLY), pytest.param(True, False, marks=NIGHTLY)]
+
+
+@pytest.mark.parametrize(("split", "matrix_free"), [(True, None), (False, False), *OTHERS])
 @pytest.mark.filterwarnings("error")
 def test_partials_are_those_of_differences_forward_and_back(split, matrix_free):
     made = problem(EVERY, split=split, matrix_free=matrix_free)

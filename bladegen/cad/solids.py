@@ -20,6 +20,7 @@ from bladegen.cad.shapes import MILLIMETRES, area, is_valid
 from bladegen.cad.step_documents import Part
 from bladegen.errors import CadError, visible
 from bladegen.support.arrays import Array
+from bladegen.support.threads import one_thread
 from bladegen.surface.deviation import Deviation
 from bladegen.surface.ends import edge_poles, rounded, tip_volume
 from bladegen.surface.fitting import fitted
@@ -88,6 +89,7 @@ class Solid:
         return cadquery.Workplane(cadquery.Solid(self.shape))
 
 
+@one_thread()
 def solid(
     blade: Blade,
     *,

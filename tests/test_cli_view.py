@@ -8,6 +8,7 @@ from bladegen.cli import commands
 from bladegen.cli.options.perturbing import Changes
 from bladegen.cli.view import What
 from bladegen.errors import BladegenError
+from bladegen.plots.blade_plots import PLOTS
 from bladegen.views import preview, sweep
 from bladegen.views.rendering import keys
 
@@ -73,7 +74,10 @@ def test_preview_writes_sweeps(small, tmp_path):
         (["preview", "nrel5mw", "--gif", "a.gif", "--sweep", "t1"], "sweep: got 't1', must be"),
         (["preview", "nrel5mw", "--compare", "a", "b"], "compare: takes two"),
         (["preview", "nrel5mw", "--screenshot", "a.png", "--colour", "distance"], "a baseline"),
-        (["plot", "nrel5mw", "-o", "a.png"], "for 7 diagrams, must be a folder or a .pdf"),
+        (
+            ["plot", "nrel5mw", "-o", "a.png"],
+            f"for {len(PLOTS)} diagrams, must be a folder or a .pdf",
+        ),
         (["plot", "nrel5mw", "-o", "a.bmp"], "suffix '.bmp', allowed are .png, .svg, .pdf"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",

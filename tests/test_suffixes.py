@@ -17,7 +17,7 @@ from bladegen.views import page, sweep
 from bladegen.views.rendering.picture import save_image
 
 RUN = CliRunner()
-READ = {"airfoils", "space", "table", "into"}  # options that name what is read
+READ = {"airfoils", "space", "table", "into", "deviation"}  # options that name what is read
 IMAGE = np.zeros((4, 4, 3), np.uint8)
 
 

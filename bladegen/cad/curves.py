@@ -13,9 +13,9 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.cad import shaping, step_documents
-from bladegen.cad.shapes import MILLIMETRES
+from bladegen.cad.shapes import MILLIMETRES, members
 from bladegen.cad.solids import Solid
-from bladegen.cad.step_documents import Part, Place
+from bladegen.cad.step_documents import Part
 from bladegen.support.arrays import Array
 from bladegen.surface.net import SurfaceNet
 from bladegen.surface.regions import COLOURS, EDGE, ROOT, SUCTION, TIP
@@ -34,10 +34,7 @@ def write_curves(solid: Solid, blade: Blade, path: Path, **options: Any) -> None
     CadError
         If OCCT cannot write the file.
     """
-    from OCP.TopLoc import TopLoc_Location
-
-    places = [Place(part.name, part, TopLoc_Location()) for part in curves(solid, blade)]
-    step_documents.write((f"{solid.name} curves", places), path, **options)
+    step_documents.write_parts(f"{solid.name} curves", curves(solid, blade), path, **options)
 
 
 def curves(solid: Solid, blade: Blade) -> list[Part]:
@@ -102,12 +99,5 @@ def _edge(poles: Array, knots: Array) -> Any:
 
 def _part(name: str, edges: list[Any], like: str) -> Part:
     """Return a wire of edges under a name, in the colour of a region."""
-    from OCP.TopAbs import TopAbs_EDGE
-    from OCP.TopExp import TopExp_Explorer
-
     wire = shaping.wire(edges)
-    explorer, pieces = TopExp_Explorer(wire, TopAbs_EDGE), []
-    while explorer.More():
-        pieces.append(("", explorer.Current(), COLOURS[like]))
-        explorer.Next()
-    return Part(name, wire, pieces)
+    return Part(name, wire, [("", edge, COLOURS[like]) for edge in members(wire, "edge")])

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.cad.shapes import MILLIMETRES
+from bladegen.cad.shapes import MILLIMETRES, members
 from bladegen.cad.triangles import ANGLE, triangles_of
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array
@@ -48,16 +48,11 @@ def faces(shape: Any) -> tuple[dict[str, Any], int]:
     CadError
         If that is all of them.
     """
-    from OCP.TopAbs import TopAbs_FACE
-    from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS
 
-    explorer = TopExp_Explorer(shape, TopAbs_FACE)
     found: dict[str, Any] = {}
     count = lost = 0
-    while explorer.More():
-        face = TopoDS.Face_s(explorer.Current())
-        explorer.Next()
+    for face in map(TopoDS.Face_s, members(shape, "face")):
         parts = _face(face)
         if not parts:
             lost += 1
@@ -145,14 +140,11 @@ def _rims(face: Any) -> list[Array]:
     """Return a face's edges as lines (m, 2) in its parameters, in the sense of their wires."""
     from OCP.BRepAdaptor import BRepAdaptor_Curve2d
     from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_Line
-    from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED
-    from OCP.TopExp import TopExp_Explorer
+    from OCP.TopAbs import TopAbs_REVERSED
     from OCP.TopoDS import TopoDS
 
-    found, edges = [], TopExp_Explorer(face, TopAbs_EDGE)
-    while edges.More():
-        edge = TopoDS.Edge_s(edges.Current())
-        edges.Next()
+    found = []
+    for edge in map(TopoDS.Edge_s, members(face, "edge")):
         curve = BRepAdaptor_Curve2d(edge, face)
         spans = curve.NbKnots() - 1 if curve.GetType() == GeomAbs_BSplineCurve else ALONG
         count = (

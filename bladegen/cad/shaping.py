@@ -17,6 +17,7 @@ __all__ = [
     "line",
     "ruled",
     "segment_on",
+    "sewing",
     "sewn",
     "surface",
     "wire",
@@ -157,17 +158,25 @@ def ruled(first: Any, second: Any) -> Any:
     return BRepFill.Face_s(first, second)
 
 
+def sewing(faces: list[Any], slack: float) -> tuple[Any, list[Any]]:
+    """Sew faces that meet within a slack [mm]; return OCCT's sewing, and its faces in order."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+    from OCP.TopoDS import TopoDS
+
+    done = BRepBuilderAPI_Sewing(slack)
+    for one in faces:
+        done.Add(one)
+    done.Perform()
+    made = [TopoDS.Face_s(done.Modified(one) if done.IsModified(one) else one) for one in faces]
+    return done, made
+
+
 def sewn(faces: list[Any], slack: float) -> tuple[Any, list[Any]]:
     """Sew faces that meet within a slack [mm] to a shell; return it, and its faces in order."""
     from OCP.BRep import BRep_Builder
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
-    from OCP.TopoDS import TopoDS, TopoDS_Shell
+    from OCP.TopoDS import TopoDS_Shell
 
-    sewing = BRepBuilderAPI_Sewing(slack)
-    for one in faces:
-        sewing.Add(one)
-    sewing.Perform()
-    made = [TopoDS.Face_s(sewing.Modified(one) if sewing.IsModified(one) else one) for one in faces]
+    _, made = sewing(faces, slack)
     shell, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(shell)
     for one in made:

@@ -28,7 +28,7 @@ from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet
 from bladegen.surface.regions import EDGE, ROOT, TIP, TIP_EDGE, colour
 from bladegen.surface.tips import Tip, flat_tip
 
-__all__ = ["DEFAULT_TOLERANCE", "LINEAR", "Solid", "cap", "closed", "solid"]
+__all__ = ["DEFAULT_TOLERANCE", "Solid", "cap", "closed", "edge_strip", "solid"]
 
 logger = logging.getLogger(__name__)
 DIGITS = 6  # of a pole's coordinates in mm: nanometres; more would only make files larger
@@ -174,7 +174,7 @@ def _faces(
         )
     ]
     if blunt:
-        strip = Patch(np.stack([net.poles[-1], net.poles[0]]), LINEAR, net.v_knots)
+        strip = edge_strip(net.poles, net.v_knots)
         rows = pieces.cut(pieces.with_knots(strip, none, more_v), none, v)
         faces += _numbered(EDGE, [shaping.face(shaping.surface(*row[0])) for row in rows])
     faces.append((ROOT, cap([p for rows in cut for p in rows[0]], 0, blunt)))
@@ -187,7 +187,7 @@ def _faces(
     across = pieces.cut(pieces.with_knots(own, none, more_u), none, u)
     faces += _numbered(TIP, [shaping.face(shaping.surface(*row[0])) for row in across])
     if blunt:
-        edge = shaping.surface(edge_poles(poles)[[-1, 0]], LINEAR, BEZIER)
+        edge = shaping.surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
         faces.append((TIP_EDGE, shaping.face(edge)))
     return faces
 
@@ -199,7 +199,12 @@ def _numbered(name: str, faces: list[Any]) -> list[tuple[str, Any]]:
     return [(f"{name} {number}", face) for number, face in enumerate(faces, start=1)]
 
 
-LINEAR = np.array([0.0, 0.0, 1.0, 1.0])
+_LINEAR = np.array([0.0, 0.0, 1.0, 1.0])
+
+
+def edge_strip(poles: Array, v_knots: Array) -> Patch:
+    """Return the strip between the ends of a net's poles (a, b, 3): a blunt trailing edge."""
+    return Patch(np.stack([poles[-1], poles[0]]), _LINEAR, v_knots)
 
 
 def cap(around: list[Patch], end: int, blunt: bool) -> Any:
@@ -222,15 +227,12 @@ def closed(
     CadError
         If the result is not one valid closed solid.
     """
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid
     from OCP.BRepLib import BRepLib
     from OCP.TopAbs import TopAbs_SHELL
     from OCP.TopoDS import TopoDS
 
-    sewing = BRepBuilderAPI_Sewing(slack)
-    for _, face in faces:
-        sewing.Add(face)
-    sewing.Perform()
+    sewing, made = shaping.sewing([face for _, face in faces], slack)
     shell = sewing.SewedShape()
     if sewing.NbFreeEdges() or shell.ShapeType() != TopAbs_SHELL:
         raise CadError(f"{name}: the faces leave {sewing.NbFreeEdges()} free edges, allowed is 0")
@@ -238,8 +240,4 @@ def closed(
     BRepLib.OrientClosedSolid_s(solid)
     if not is_valid(solid):
         raise CadError(f"{name}: OCCT's check finds the solid invalid")
-    named = tuple(
-        (label, TopoDS.Face_s(sewing.Modified(face) if sewing.IsModified(face) else face))
-        for label, face in faces
-    )
-    return solid, named
+    return solid, tuple((label, face) for (label, _), face in zip(faces, made, strict=True))

@@ -14,7 +14,7 @@ from bladegen.cad.occt import in_millimetres, quietly, save, time_of
 from bladegen.errors import CadError
 from bladegen.version import __version__
 
-__all__ = ["NOBODY", "STEP_SCHEMAS", "Author", "Part", "Place", "write"]
+__all__ = ["NOBODY", "STEP_SCHEMAS", "Author", "Part", "Place", "write", "write_parts"]
 
 STEP_SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS"}  # and what OCCT calls them
 
@@ -121,6 +121,19 @@ def write(
     if status.name != "IFSelect_RetDone":
         raise CadError(f"{path}: OCCT could not write the STEP file ({status.name})")
     save(path, content)
+
+
+def write_parts(name: str, parts: Sequence[Part], path: Path, **options: Any) -> None:
+    """Write parts where they are as an assembly of that name; options as of `write`.
+
+    Raises
+    ------
+    CadError
+        If OCCT cannot write the file.
+    """
+    from OCP.TopLoc import TopLoc_Location
+
+    write((name, [Place(part.name, part, TopLoc_Location()) for part in parts]), path, **options)
 
 
 def _document(what: Part | tuple[str, Sequence[Place]]) -> Any:

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bladegen.cad.shapes import MILLIMETRES
+from bladegen.cad.shapes import MILLIMETRES, members
 from bladegen.errors import CadError
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.mesh import TriangleMesh
@@ -35,17 +35,14 @@ def triangulated(shape: Any, deflection: float) -> TriangleMesh:
         If OCCT makes no triangles of it.
     """
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
-    from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
-    from OCP.TopExp import TopExp_Explorer
+    from OCP.TopAbs import TopAbs_REVERSED
     from OCP.TopoDS import TopoDS
 
     BRepMesh_IncrementalMesh(shape, deflection * MILLIMETRES, False, ANGLE, True)
     points: list[Array] = []
     triangles: list[Indices] = []
-    count, explorer = 0, TopExp_Explorer(shape, TopAbs_FACE)
-    while explorer.More():
-        face = TopoDS.Face_s(explorer.Current())
-        explorer.Next()
+    count = 0
+    for face in map(TopoDS.Face_s, members(shape, "face")):
         part = triangles_of(face)
         if part is None:
             continue

@@ -15,8 +15,8 @@ import numpy as np
 from bladegen.cad import pieces, shaping, step_documents
 from bladegen.cad.pieces import Patch
 from bladegen.cad.shapes import MILLIMETRES, area
-from bladegen.cad.solids import LINEAR, Solid, cap, closed
-from bladegen.cad.step_documents import Part, Place
+from bladegen.cad.solids import Solid, cap, closed, edge_strip
+from bladegen.cad.step_documents import Part
 from bladegen.cad.structure.zones import Bay, bays_of
 from bladegen.errors import Finding
 from bladegen.layup.layup import Layup
@@ -109,7 +109,7 @@ def inside(solid: Solid, layup: Layup) -> Inside:
             webs.setdefault(web, []).append(shaping.ruled(lines[foot], lines[other]))
     others = [(ROOT, cap(halves, 0, net.blunt)), (TIP, cap(halves, -1, net.blunt))]
     if net.blunt:
-        strip = Patch(np.stack([net.poles[-1], net.poles[0]]) * MILLIMETRES, LINEAR, net.v_knots)
+        strip = edge_strip(net.poles * MILLIMETRES, net.v_knots)
         rows = pieces.cut(strip, np.zeros(0), breaks)
         faces = [shaping.face(shaping.surface(*row[0])) for row in rows]
         others += [(f"{EDGE} {i}", face) for i, face in enumerate(faces, start=1)]
@@ -207,7 +207,4 @@ def write_structure(made: Inside, name: str, path: Path, **options: Any) -> None
     CadError
         If OCCT cannot write the file.
     """
-    from OCP.TopLoc import TopLoc_Location
-
-    places = [Place(part.name, part, TopLoc_Location()) for part in (made.skin, *made.webs)]
-    step_documents.write((f"{name} structure", places), path, **options)
+    step_documents.write_parts(f"{name} structure", [made.skin, *made.webs], path, **options)

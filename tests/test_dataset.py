@@ -331,7 +331,7 @@ def test_adding_goes_on_wherever_it_was_killed(folder, planned, tmp_path, monkey
         raise KilledError
 
     home = {"settle": "bladegen.families.run", "resize": "zarr.Array"}
-    where = home.get(last, "bladegen.families.growth")
+    where = home.get(last, "bladegen.families.additions.growth")
     with monkeypatch.context() as patch:
         patch.setattr(f"{where}.{last}", killed)
         with pytest.raises(KilledError):
@@ -346,7 +346,7 @@ def test_adding_goes_on_wherever_it_was_killed(folder, planned, tmp_path, monkey
         ({"count": COUNT - 1}, "holds 70 variants, 69 are asked for"),
         ({"count": 2 * COUNT, "seed": 8}, "holds another family .seed: 7 there, 8 asked for"),
         ({"count": 2 * COUNT, "kind": "lhs"}, "depend on how many there are"),
-        ({"count": 10**6}, "names have more digits"),
+        ({"count": 10**6}, "names of more digits"),
     ],
 )
 def test_what_cannot_be_added_is_refused(folder, planned, change, said):

@@ -18,7 +18,8 @@ from bladegen.cad import exchange, shapes
 from bladegen.errors import BladegenError, PerturbationError
 from bladegen.exports.options import Options
 from bladegen.families.family import BLOCK
-from bladegen.families.folder import FamilyFolder, sections_digest
+from bladegen.families.folder import FamilyFolder
+from bladegen.families.manifest_rows import sections_digest
 from bladegen.families.order import Order
 from bladegen.families.processes import in_processes
 from bladegen.families.run import run

@@ -1,6 +1,7 @@
 """Labels of families, held against the blades that they are of."""
 
 import json
+import shutil
 from dataclasses import replace
 from functools import cache
 
@@ -16,6 +17,7 @@ from bladegen.aero.evaluation import evaluated
 from bladegen.aero.kulfan import in_chords
 from bladegen.definition.blade_definition import Rotor
 from bladegen.errors import FamilyError
+from bladegen.families.additions.later_labels import add_labels
 from bladegen.families.labels import labelling
 from bladegen.families.labels.figures import ALPHA, FIGURES, LABELS, REYNOLDS, STORED, polar_places
 from bladegen.families.order import Order
@@ -115,8 +117,121 @@ def test_labels_of_a_family_that_was_added_to_are_those_of_one_run(folder, tmp_p
     for name in (one.name for label in kinds for one in FIGURES[label]):
         assert_array_equal(was[name][:], new[name][:], err_msg=name)
     assert run(Order(planned(), tmp_path, labels=kinds), resume=True) == 0
-    with pytest.raises(FamilyError, match=r"holds another family .*labels: "):
+    with pytest.raises(FamilyError, match=r"with labels; say --label polars,rotor as"):
         run(Order(planned(), tmp_path, labels=("rotor",)), resume=True)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """The family of `folder` without labels; copied, not written to."""
+    target = tmp_path_factory.mktemp("plain") / "family"
+    run(Order(planned(), target))
+    return target
+
+
+def same_labelled(one, two):
+    """Hold a family that was labelled later against one labelled while it was made."""
+    assert json.loads((one / "family.json").read_text()) == json.loads(
+        (two / "family.json").read_text()
+    )
+    was, new = bg.load_family(one), bg.load_family(two)
+    assert was.table().schema == new.table().schema
+    with xarray.open_zarr(two / "sections.zarr") as a, xarray.open_zarr(one / "sections.zarr") as b:
+        # twist is stored in degrees, and comes back to the last digit but one
+        xarray.testing.assert_allclose(a, b, rtol=1e-9)
+        assert set(a.coords) == set(b.coords)
+        assert a.attrs == b.attrs
+        assert all(a[name].attrs == b[name].attrs for name in a.variables)
+    assert (one / "CARD.md").read_text() == (two / "CARD.md").read_text()
+    assert not (two / "labels").exists()
+
+
+def test_labels_that_are_added_later_are_those_made_with_the_family(folder, plain, tmp_path):
+    target = shutil.copytree(plain, tmp_path / "family")
+    shown = command("label", target, "mass")
+    assert shown.exit_code == 0, shown.output
+    assert f"{COUNT}, {COUNT} of them labelled now" in shown.output
+    before = (target / "manifest.parquet").read_bytes()
+    assert "0 of them labelled now" in command("label", target, "mass").output
+    assert (target / "manifest.parquet").read_bytes() == before
+    assert command("label", target, "rotor,polars", "mass").exit_code == 0
+    same_labelled(folder, target)
+    assert run(Order(planned(), target, labels=LABELS), resume=True) == 0
+    more = planned(COUNT + 1)
+    assert run(Order(more, target, labels=LABELS), append=True) == COUNT + 1
+    assert np.isfinite(bg.load_family(target)["polar_cl"][:]).all()
+
+
+@pytest.mark.parametrize(
+    "last",
+    [
+        *(
+            pytest.param(name, marks=pytest.mark.nightly)
+            for name in (
+                "folder.FamilyFolder.write_block",
+                "additions.later_labels._join",
+                "additions.later_labels.replacing",
+                "additions.later_labels.write_card",
+            )
+        ),
+        "dataset.store._fill",
+    ],
+)
+def test_adding_labels_goes_on_wherever_it_was_killed(plain, tmp_path, monkeypatch, last):
+    target = shutil.copytree(plain, tmp_path / "family")
+    kinds = ("polars", "mass")
+
+    class KilledError(Exception):
+        pass
+
+    def killed(*_, **__):
+        raise KilledError
+
+    with monkeypatch.context() as patch:
+        patch.setattr(f"bladegen.families.{last}", killed)
+        with pytest.raises(KilledError):
+            add_labels(bg.load_family(target), kinds)
+    assert bg.load_family(target)["volume"][:].shape == (COUNT,)  # can be read all the while
+    with pytest.raises(FamilyError, match=r"`bladegen label .* polars mass` goes on"):
+        run(Order(planned(), target), resume=True)
+    with pytest.raises(FamilyError, match="polars and mass are not finished"):
+        add_labels(bg.load_family(target), ("rotor",))
+    add_labels(bg.load_family(target), kinds)
+    made = tmp_path / "made"
+    run(Order(planned(), made, labels=kinds))
+    same_labelled(made, target)
+
+
+@pytest.mark.nightly
+def test_threads_add_the_same_labels(plain, tmp_path, monkeypatch):
+    from bladegen.families import order
+
+    monkeypatch.setattr(order, "BLOCK", 2)
+    run(Order(planned(), tmp_path / "one"))
+    shutil.copytree(tmp_path / "one", tmp_path / "two")
+    told = []
+    add_labels(bg.load_family(tmp_path / "one"), LABELS)
+    add_labels(bg.load_family(tmp_path / "two"), LABELS, jobs=2, progress=told.append)
+    assert told == [0, 2, 4]
+    same_labelled(tmp_path / "one", tmp_path / "two")
+
+
+def test_labels_that_cannot_be_added_are_refused_in_a_line(folder, plain, tmp_path):
+    with pytest.raises(FamilyError, match=r"label: got 'loads'"):
+        add_labels(bg.load_family(plain), ("loads",))
+    other = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=101)
+    with pytest.raises(FamilyError, match=r"variant 0 lies .* baseline or the space is another"):
+        add_labels(bg.load_family(plain, blade=other), ("polars",))
+    told = json.loads((folder / "family.json").read_text())
+    told["labels"]["polars"]["network"] = "NeuralFoil 0.0 tiny"
+    target = shutil.copytree(folder, tmp_path / "family")
+    (target / "family.json").write_text(json.dumps(told))
+    with pytest.raises(FamilyError, match=r"has polars by other settings .*0\.0 tiny.* there"):
+        add_labels(bg.load_family(target), ("polars",))
+    with pytest.raises(FamilyError, match=r"without rotor; `bladegen label .* rotor` adds labels"):
+        run(Order(planned(COUNT + 1), plain, labels=("rotor",)), append=True)
+    with pytest.raises(FamilyError, match=r"holds this family with labels; say --label polars,"):
+        run(Order(planned(), folder), resume=True)
 
 
 def test_variants_that_are_not_sound_have_no_labels(tmp_path):

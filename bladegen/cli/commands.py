@@ -29,6 +29,7 @@ SUMMARIES = {
     "build": "Build a blade: a STEP solid, meshes, grids, a picture and a report.",
     "perturb": "Perturb a blade consistently and build it.",
     "family": "Make a family of perturbed blades: sections, a manifest, files and a contact sheet.",
+    "label": "Add labels to a family: polars, what rotors do, mass of each sound variant.",
     "check": "Measure a solid, a mesh or a blade definition, or the distance between two of them.",
     "evaluate": "Evaluate a blade: power, thrust, root moment and annual energy.",
     "fit": "Fit a definition to a surface: axis, chord, twist, offsets, airfoils at few stations.",
@@ -77,6 +78,8 @@ def function_of(name: str) -> Any:  # noqa: PLR0912
             from bladegen.cli.build import perturb as run
         case "family":
             from bladegen.cli.family import family as run
+        case "label":
+            from bladegen.cli.analysis.label import label as run
         case "check":
             from bladegen.cli.check import check as run
         case "evaluate":

@@ -25,7 +25,7 @@ from bladegen.cli.terminal import print_table, remark, variants_bar
 from bladegen.errors import FamilyError
 from bladegen.support.stopping import Stopped
 
-__all__ = ["family"]
+__all__ = ["SHOWN", "family", "figure_range"]
 
 SHOWN = {  # labels that the summary has
     "rotor_power_coefficient": "largest power coefficient",
@@ -186,7 +186,7 @@ def family(
     _summary(order, made)
 
 
-def _range(values: Any) -> str:
+def figure_range(values: Any) -> str:
     """Return the least and the largest of figures, those that are none left out."""
     known = [value for value in values.tolist() if isfinite(value)]
     return f"{min(known):.5g} to {max(known):.5g}" if known else "none"
@@ -237,7 +237,7 @@ def _summary(order: Any, made: int) -> None:
         ["draws", f"{int(manifest['attempts'].sum())}"],
         ["volume", f"{smallest} to {largest} m3" if len(volume) else "none"],
         ["sections", f"{len(family.eta)} of {len(family.blade.u)} landmarks, {order.dtype}"],
-        *([SHOWN[name], _range(manifest[name][valid])] for name in shown),
+        *([SHOWN[name], figure_range(manifest[name][valid])] for name in shown),
         ["size", megabytes(size)],
         ["overlay", remark],
     ]

@@ -7,13 +7,13 @@
     CARD.md            the dataset's card; space.npz its space where it is not the bundled one
     blades/            files of each variant in the formats asked for
     parts/             while a run goes on: one Parquet file a finished block
+    labels/            while labels are added: the same of labels, and which they are
 
 A block is written in this order: sections and blades first, its part last, under a temporary
 name that is changed when it is whole.  So a part says that its block is whole, and what a killed
 run leaves without its part is written again.
 """
 
-import hashlib
 import json
 import os
 import shutil
@@ -27,13 +27,12 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import ExportError, FamilyError
-from bladegen.families.block import Block
 from bladegen.families.family import BLOCK
 from bladegen.families.forecasts import NoRoomError
-from bladegen.families.identity import differences
+from bladegen.families.identity import require_same
 from bladegen.support.files import alone, folder, replacing
 
-__all__ = ["GRAPH", "FamilyFolder", "read_manifest", "sections_digest"]
+__all__ = ["GRAPH", "FamilyFolder", "read_manifest"]
 
 ZARR = "sections.zarr"
 FLOAT_TYPES = {"float32": np.float32, "float64": np.float64}
@@ -67,6 +66,11 @@ class FamilyFolder:
         """Where finished blocks are noted while a run goes on."""
         return self.path / "parts"
 
+    @property
+    def labels(self) -> Path:
+        """Where finished blocks of labels are noted while they are added."""
+        return self.path / "labels"
+
     def part(self, number: int) -> Path:
         """Return the file that says that a block is whole."""
         return self.parts / f"part-{number:06d}.parquet"
@@ -86,12 +90,7 @@ class FamilyFolder:
                 found = json.loads(self.description.read_text(encoding="utf-8"))
             except (OSError, ValueError):
                 found = {}
-            different = differences(wanted, found if isinstance(found, dict) else {})
-            if different:
-                raise FamilyError(
-                    f"{self.path}: holds another family ({'; '.join(different[:3])}); take "
-                    "another folder"
-                )
+            require_same(self.path, wanted, found if isinstance(found, dict) else {})
             if not resume:
                 raise FamilyError(
                     f"{self.path}: holds this family already, whole or in part; --resume goes on"
@@ -160,21 +159,40 @@ class FamilyFolder:
         try:
             group = zarr.open_group(self.store, mode="a", zarr_format=3, use_consolidated=False)
             group.attrs.update({"unit": "m", "axes": "variant, span, landmark, xyz"})
-            for name, (dimensions, lengths) in {**own, **beside}.items():
-                group.require_array(
-                    name,
-                    shape=(count, *lengths),
-                    dtype=dtype if name == "sections" else "float32",
-                    chunks=(1, *lengths),
-                    shards=(self.block, *lengths),
-                    compressors=None,
-                    dimension_names=("variant", *dimensions),
-                )
+            self._require(group, count, own, dtype)
+            self._require(group, count, beside)
             for name, dimension, values in (("eta", "span", eta), ("u", "landmark", u)):
                 if name not in group:
                     group.create_array(name, data=np.array(values), dimension_names=(dimension,))
         except OSError as error:
             raise ExportError(f"{self.store}: cannot be written: {error.strerror}") from None
+
+    def make_beside(
+        self, count: int, beside: Mapping[str, tuple[tuple[str, ...], tuple[int, ...]]]
+    ) -> None:
+        """Make empty arrays in a store that is there, if they are not."""
+        try:
+            self._require(self._arrays, count, beside)
+        except OSError as error:
+            raise ExportError(f"{self.store}: cannot be written: {error.strerror}") from None
+
+    def _require(
+        self,
+        group: Any,
+        count: int,
+        arrays: Mapping[str, tuple[tuple[str, ...], tuple[int, ...]]],
+        dtype: str = "float32",
+    ) -> None:
+        for name, (dimensions, lengths) in arrays.items():
+            group.require_array(
+                name,
+                shape=(count, *lengths),
+                dtype=dtype,
+                chunks=(1, *lengths),
+                shards=(self.block, *lengths),
+                compressors=None,
+                dimension_names=("variant", *dimensions),
+            )
 
     @property
     def sections(self) -> Any:
@@ -188,21 +206,21 @@ class FamilyFolder:
         return zarr.open_group(self.store, mode="r+", use_consolidated=False)
 
     def write_block(
-        self, number: int, block: Block, rows: dict[str, Any], more: dict[str, Any]
+        self, number: int, arrays: Mapping[str, Any], rows: Mapping[str, Any], part: Path
     ) -> None:
-        """Write a block's sections and what more is stored beside, then its manifest's part."""
+        """Write a block's arrays of the store, then its part: rows of the manifest."""
         import pyarrow.parquet as pq
 
-        start, arrays = int(block.index[0]), self._arrays
+        start, group = number * self.block, self._arrays
         try:
-            for name, values in {"sections": block.batch.sections, **more}.items():
-                arrays[name][start : start + len(block.index)] = values
+            for name, values in arrays.items():
+                group[name][start : start + len(values)] = values
                 _flush(self.store / name / "c" / str(number))
         except OSError as error:
             raise ExportError(
                 f"{self.store}: cannot be written: {error.strerror or error}"
             ) from None
-        with replacing(self.part(number)) as temporary:
+        with replacing(part) as temporary:
             pq.write_table(_table(rows), temporary, compression="zstd")
             _flush(temporary)
 
@@ -242,13 +260,7 @@ def read_manifest(place: FamilyFolder, columns: Sequence[str]) -> dict[str, Any]
     }
 
 
-def sections_digest(sections: Any) -> str:
-    """Return the SHA-256 of one variant's sections, little-endian, as hex digits."""
-    data = np.ascontiguousarray(sections).astype(sections.dtype.newbyteorder("<"), copy=False)
-    return hashlib.sha256(data.tobytes()).hexdigest()
-
-
-def _table(rows: dict[str, Any]) -> Any:
+def _table(rows: Mapping[str, Any]) -> Any:
     """Return columns as an Arrow table; matrices become lists of fixed length."""
     import pyarrow as pa
 

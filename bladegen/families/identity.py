@@ -5,11 +5,13 @@ it stands in `family.json` and is compared before a run goes on.
 """
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.errors import FamilyError
 from bladegen.exports.provenance import fingerprint
 from bladegen.families.family import Family
 from bladegen.shapes.shape_space import ShapeSpace
@@ -17,7 +19,7 @@ from bladegen.support.arrays import Array
 from bladegen.variants.designs import Design
 from bladegen.version import __version__
 
-__all__ = ["fingerprint", "identity"]
+__all__ = ["fingerprint", "identity", "require_same"]
 
 FEW = 64  # variants of a plan of any length that tell whether libraries draw as they did
 
@@ -81,10 +83,32 @@ def _blade(blade: Blade) -> str:
     )
 
 
-def differences(wanted: dict[str, Any], found: dict[str, Any]) -> list[str]:
-    """Say in what two identities differ."""
-    return [
-        f"{key}: {json.dumps(found.get(key))} there, {json.dumps(wanted.get(key))} asked for"
-        for key in wanted | found
-        if wanted.get(key) != found.get(key)
-    ]
+def require_same(path: Path, wanted: dict[str, Any], found: dict[str, Any]) -> None:
+    """Raise if a folder holds another family than the one that is asked for.
+
+    Raises
+    ------
+    FamilyError
+        That says in what they differ, and how labels are added.
+    """
+    different = [key for key in wanted | found if wanted.get(key) != found.get(key)]
+    if different == ["labels"]:
+        asked, there = (one.get("labels", {}) for one in (wanted, found))
+        missing, others = (
+            [k for k in a if k not in b] for a, b in ((asked, there), (there, asked))
+        )
+        if missing:
+            raise FamilyError(
+                f"{path}: holds this family without {' and '.join(missing)}; "
+                f"`bladegen label {path} {' '.join(missing)}` adds labels"
+            )
+        if others:
+            raise FamilyError(
+                f"{path}: holds this family with labels; say --label {','.join(there)} as well"
+            )
+    if different:
+        said = [
+            f"{key}: {json.dumps(found.get(key))} there, {json.dumps(wanted.get(key))} asked for"
+            for key in different[:3]
+        ]
+        raise FamilyError(f"{path}: holds another family ({'; '.join(said)}); take another folder")

@@ -39,7 +39,8 @@ def make_block(order: Order, number: int) -> Made:
         labels = order.labelling.computed(block)
     stored = {name: labels.pop(name) for name in order.labelling.arrays()}
     stored |= _graph(block) if order.graph else {}
-    order.place.write_block(number, block, rows | labels, stored)
+    stored["sections"] = block.batch.sections
+    order.place.write_block(number, stored, rows | labels, order.place.part(number))
     return number, drawn_again(family, block), time.monotonic() - start
 
 

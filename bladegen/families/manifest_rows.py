@@ -1,5 +1,6 @@
 """The manifest's rows of a block of variants, and what is told of their draws."""
 
+import hashlib
 from typing import Any
 
 import numpy as np
@@ -7,11 +8,10 @@ import numpy as np
 from bladegen.curves import polygons
 from bladegen.families.block import Block
 from bladegen.families.family import Family
-from bladegen.families.folder import sections_digest
 from bladegen.measures.spanwise import UNITS
 from bladegen.variants.draws import WIDEST
 
-__all__ = ["drawn_again", "rows_of"]
+__all__ = ["drawn_again", "rows_of", "sections_digest"]
 
 
 def drawn_again(family: Family, block: Block) -> list[str]:
@@ -57,3 +57,9 @@ def rows_of(family: Family, block: Block) -> dict[str, Any]:
 def _seeds(seed: int, count: int) -> Any:
     """Return a seed's column; as text if it has more digits than a column of numbers holds."""
     return np.full(count, seed, dtype=np.int64) if seed < WIDEST else [str(seed)] * count
+
+
+def sections_digest(sections: Any) -> str:
+    """Return the SHA-256 of one variant's sections, little-endian, as hex digits."""
+    data = np.ascontiguousarray(sections).astype(sections.dtype.newbyteorder("<"), copy=False)
+    return hashlib.sha256(data.tobytes()).hexdigest()

@@ -8,9 +8,9 @@ processes: OCCT and writers in Python hold the lock.
 import logging
 import os
 import signal
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from itertools import islice
-from typing import Any
+from typing import Any, TypeVar
 
 from bladegen.errors import ExportError, FamilyError
 from bladegen.families.making import Made, make_block
@@ -19,6 +19,7 @@ from bladegen.support.threads import one_thread
 
 __all__ = ["in_processes", "in_threads", "on_cluster"]
 
+T = TypeVar("T")
 logger = logging.getLogger(__name__)
 
 AHEAD = 4  # blocks a worker that are handed out before they can begin: plans may be long
@@ -38,18 +39,18 @@ def _make_here(number: int) -> Made:
     return make_block(_ORDER[0], number)
 
 
-def in_threads(order: Order, left: list[int], jobs: int) -> Generator[Made]:
+def in_threads(make: Callable[[int], T], left: list[int], jobs: int) -> Generator[T]:
     """Make blocks in threads of this process; told to stop, end those at work and no more."""
     from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 
     coming = iter(left)
     with one_thread(), ThreadPoolExecutor(jobs, thread_name_prefix="blocks") as pool:
         try:
-            waiting = {pool.submit(make_block, order, one) for one in islice(coming, jobs)}
+            waiting = {pool.submit(make, one) for one in islice(coming, jobs)}
             while waiting:
                 finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
                 more = islice(coming, len(finished))
-                waiting |= {pool.submit(make_block, order, one) for one in more}
+                waiting |= {pool.submit(make, one) for one in more}
                 for task in finished:
                     yield task.result()
         finally:

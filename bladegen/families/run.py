@@ -5,18 +5,20 @@ Blocks do not know of each other, so who makes them and in what order changes no
 
 import logging
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from contextlib import closing
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from bladegen.errors import FamilyError
+from bladegen.families.additions.growth import grow, settle
+from bladegen.families.additions.unfinished import require_none
 from bladegen.families.dataset.writing import write_dataset
 from bladegen.families.folder import FLOAT_TYPES
 from bladegen.families.forecasts import Forecast, free_bytes, require_room
-from bladegen.families.growth import grow, settle
-from bladegen.families.making import make_block, sections_of
+from bladegen.families.making import Made, make_block, sections_of
 from bladegen.families.order import Order
 from bladegen.families.processes import in_processes, in_threads, on_cluster
 from bladegen.support.arguments import whole
@@ -70,6 +72,7 @@ def run(
     if not (resume or append):
         require_room(order.target, len(family), _bytes(order, len(family)), at_least=True)
     with place.alone(), place.undone_if_refused():
+        require_none(place)
         if append:
             grow(order)
         place.begin(order.identity, resume=resume or append)
@@ -96,8 +99,13 @@ def run(
                 made, several = on_cluster(order, left, client), len(client.nthreads())
             elif jobs > 1 and len(left) > 1:
                 several = min(jobs, len(left))
-                beside = in_processes if order.suffixes else in_threads
-                made = beside(order, left, several)
+                make = partial(make_block, order)
+                threads = not order.suffixes
+                made = (
+                    in_threads(make, left, several)
+                    if threads
+                    else in_processes(order, left, several)
+                )
             else:
                 made, several = (make_block(order, number) for number in left), 1
             with closing(made):
@@ -118,6 +126,13 @@ def run(
         place.finish(len(family))
         write_dataset(order)
     return done - before
+
+
+def _beside(order: Order, left: list[int], several: int) -> Generator[Made]:
+    """Make blocks side by side on this machine."""
+    if order.suffixes:
+        return in_processes(order, left, several)
+    return in_threads(partial(make_block, order), left, several)
 
 
 def _bytes(order: Order, variants: int) -> int:

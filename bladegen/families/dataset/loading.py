@@ -226,9 +226,9 @@ class LoadedFamily:
         }
 
     def _blade(self, place: int) -> Blade:
-        made: Blade = self._planned.variant(place)
+        made: Blade = self.planned.variant(place)
         stored = np.asarray(self.store["sections"][place], dtype=np.float64)
-        apart = float(np.abs(made.sections(self._planned.eta) - stored).max())
+        apart = float(np.abs(made.sections(self.planned.eta) - stored).max())
         if not apart <= SAME * made.length:
             raise FamilyError(
                 f"{self.path}: variant {place} lies {apart:.2g} m off its stored sections, so the "
@@ -237,8 +237,8 @@ class LoadedFamily:
         return made
 
     @cached_property
-    def _planned(self) -> Family:
-        """The family, its variants where the manifest says that they lie."""
+    def planned(self) -> Family:
+        """The family as a plan, its variants where the manifest says that they lie."""
         return planned_again(
             self.path,
             {**self.attributes, **self.identity},

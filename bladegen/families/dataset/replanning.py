@@ -71,7 +71,7 @@ def _baseline(path: Path, told: Mapping[str, Any]) -> Blade:
     if name not in bundled() or any(key.startswith("change1.") for key in settings):
         raise FamilyError(
             f"{path}: its baseline {name!r} is no bundled blade; "
-            "load_family(path, blade=...) takes it"
+            "load_family(path, blade=...) takes it, `bladegen label` --blade FILE"
         )
     made = Blade.from_definition(
         read(name),

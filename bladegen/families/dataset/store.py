@@ -23,10 +23,10 @@ from bladegen.families.dataset.variables import (
     parameter,
     variables,
 )
-from bladegen.families.labels.figures import STORED
+from bladegen.families.labels.figures import FIGURES, STORED
 from bladegen.families.labels.figures import axes as axes_of_labels
 
-__all__ = ["column_values", "complete", "is_complete", "opened"]
+__all__ = ["add_labels", "column_values", "complete", "is_complete", "opened"]
 
 DIMENSIONS = ("variant", "span", "landmark", "xyz")
 CONVENTIONS = "CF-1.11"
@@ -99,6 +99,42 @@ def complete(
         raise ExportError(f"{store}: cannot be written: {error.strerror or error}") from None
 
 
+def add_labels(
+    store: Path, manifest: Path, identity: Mapping[str, Any], labels: Sequence[str]
+) -> None:
+    """Add labels to a complete store whose manifest has come to hold them.
+
+    Parameters
+    ----------
+    store, manifest : Path
+        `sections.zarr` and `manifest.parquet`.
+    identity : mapping
+        What `family.json` holds by now.
+    labels : sequence of str
+        Those that are new.
+
+    Raises
+    ------
+    ExportError
+        If the store cannot be written.
+    """
+    import pyarrow.parquet as pq
+    import zarr
+
+    group, new = opened(store, writing=True), {one.name for k in labels for one in FIGURES[k]}
+    try:
+        with pq.ParquetFile(manifest) as file, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Zarr's, that consolidated metadata may change
+            all_ = variables(file.schema_arrow.names, list(identity["factors"]))
+            axes = _axes(group, list(identity["labels"]))
+            _fill(group, file, [one for one in all_ if one.name in new], axes, None)
+            names = [parameter(factor).name for factor in identity["factors"]]
+            group.attrs.update(_said(all_, names, axes))
+            zarr.consolidate_metadata(group.store)
+    except OSError as error:
+        raise ExportError(f"{store}: cannot be written: {error.strerror or error}") from None
+
+
 def _said(wanted: list[Variable], parameters: list[str], axes: Mapping[str, int]) -> dict[str, Any]:
     names = [one.name for one in wanted if one.name in COORDINATES and one.name != "variant"]
     names += [name for name in COORDINATES if name in FIXED]
@@ -149,9 +185,9 @@ def _axes(group: Any, labels: Sequence[str]) -> dict[str, int]:
 
 
 def _fill(
-    group: Any, file: Any, wanted: list[Variable], axes: Mapping[str, int], seed: int
+    group: Any, file: Any, wanted: list[Variable], axes: Mapping[str, int], seed: int | None
 ) -> None:
-    """Write all variables, some rows at a time."""
+    """Write variables, and the split by a seed if there is one, some rows at a time."""
     count, arrays = file.metadata.num_rows, {}
     lengths = {"variant": count, "span": group["sections"].shape[1], **axes}
     rows = max(1, CHUNK // lengths["span"])
@@ -159,7 +195,7 @@ def _fill(
     kinds = {
         one.name: column_values(file.schema_arrow.empty_table()[one.column]).dtype for one in wanted
     }
-    for one in [*wanted, split]:
+    for one in wanted if seed is None else [*wanted, split]:
         kind = kinds.get(one.name, np.dtypes.StringDType())
         shape = tuple(lengths[name] for name in one.dims)
         arrays[one.name] = group.create_array(
@@ -175,8 +211,9 @@ def _fill(
         end = start + len(table)
         for one in wanted:
             arrays[one.name][start:end] = column_values(table[one.column])
-        parts = split_of(np.arange(start, end), seed)
-        arrays["split"][start:end] = np.array(SPLITS, dtype=np.dtypes.StringDType())[parts]
+        if seed is not None:
+            parts = split_of(np.arange(start, end), seed)
+            arrays["split"][start:end] = np.array(SPLITS, dtype=np.dtypes.StringDType())[parts]
 
 
 def _tables(file: Any, rows: int) -> Iterator[tuple[int, Any]]:

@@ -1,5 +1,6 @@
 """The dataset of a family whose sections and manifest are whole: arrays, card, space."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -7,12 +8,12 @@ import numpy as np
 from bladegen.exports.provenance import blade_settings, made_from
 from bladegen.families.dataset.card import card
 from bladegen.families.dataset.store import complete
-from bladegen.families.folder import read_manifest
+from bladegen.families.folder import FamilyFolder, read_manifest
 from bladegen.families.order import Order
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.files import replacing
 
-__all__ = ["CARD", "about", "write_dataset"]
+__all__ = ["CARD", "about", "write_card", "write_dataset"]
 
 CARD, SPACE = "CARD.md", "space.npz"
 
@@ -31,6 +32,11 @@ def write_dataset(order: Order) -> None:
     space = order.family.space
     if space is not None and space != ShapeSpace.bundled().at(space.u) and space.is_own:
         space.save(place.path / SPACE)
+    write_card(place, identity, told)
+
+
+def write_card(place: FamilyFolder, identity: dict[str, Any], told: Mapping[str, Any]) -> None:
+    """Write the card of a family, by what its folder and its dataset say of it."""
     rows = read_manifest(place, ("valid", "attempts"))
     text = card(identity, told, int(rows["valid"].sum()), int(np.sum(rows["attempts"])))
     with replacing(place.path / CARD) as temporary:

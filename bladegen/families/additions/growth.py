@@ -13,7 +13,7 @@ from typing import Any
 from bladegen.errors import FamilyError
 from bladegen.families.dataset.store import opened
 from bladegen.families.folder import GRAPH, FamilyFolder
-from bladegen.families.identity import differences
+from bladegen.families.identity import require_same
 from bladegen.families.labels.figures import STORED
 from bladegen.families.order import Order
 from bladegen.support.files import folder, replacing
@@ -53,12 +53,11 @@ def grow(order: Order) -> None:
     table = family.design.table
     fewer = replace(family.design, count=there, table=None if table is None else table[:there])
     before = json.loads(json.dumps(replace(order, family=replace(family, design=fewer)).identity))
-    different = differences(before, found)
+    require_same(place.path, before, found)
     if family.name(0) != replace(family, design=fewer).name(0):
-        different.append("names have more digits")
-    if different:
         raise FamilyError(
-            f"{place.path}: holds another family ({'; '.join(different[:3])}); take another folder"
+            f"{place.path}: {count} variants have names of more digits than the {there} that are "
+            "there; take another folder"
         )
     _keep_parts(place)
     if there % place.block:

@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen.studio.model import Baseline
-from bladegen.studio.page.charts import planform, section, ticks
+from bladegen.studio.page.charts import planform, section
+from bladegen.studio.page.drawing.svg import ticks
 from bladegen.studio.state import State
 
 

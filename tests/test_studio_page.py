@@ -19,10 +19,11 @@ from bladegen.errors import StudioError
 from bladegen.measures import checks
 from bladegen.studio import server
 from bladegen.studio.library import Library
+from bladegen.studio.page.live import Live
 from bladegen.studio.page.tab import Page
+from bladegen.studio.process import Worker
 from bladegen.studio.server import serve
 from bladegen.studio.visits import MOST, Visits
-from bladegen.studio.worker import Worker
 
 WAIT = 600_000  # ms; far more than is needed, for machines that are busy
 FLAGS = [
@@ -93,6 +94,27 @@ def browser():
         running = playwright.chromium.launch(executable_path=path, args=FLAGS)
         yield running
         running.close()
+
+
+@pytest.fixture(autouse=True)
+def asked(monkeypatch):
+    """Keep the states that answers are asked for; nothing is computed but where a test looks."""
+    kept = []
+    monkeypatch.setattr(Live, "ask", lambda live, state: kept.append(state))
+    return kept
+
+
+@pytest.fixture
+def answering(asked, monkeypatch):
+    """Compute answers, in this process: that they have one of their own tells a nightly test."""
+    monkeypatch.undo()
+
+    def submit(worker, make, question):
+        future = Future()
+        future.set_result(make(question))
+        return future
+
+    monkeypatch.setattr(Worker, "submit", submit)
 
 
 @pytest.fixture
@@ -200,6 +222,36 @@ def test_a_slider_moves_the_picture_and_the_numbers(opened):
     assert tab.get_by_role("spinbutton", name="Thickness, value").input_value() == "1.05"
     label = tab.locator(".section svg").get_attribute("aria-label")
     assert label.startswith("Section at 50 % of the span")
+
+
+def known(tab, name):
+    """Return a row of the figures beside the baseline's, once they are those of the state."""
+    tab.wait_for_selector(".figures:not(.stale) table")
+    cells = tab.locator(".figures tr", has_text=name).first.locator("td")
+    return [words.replace("\u2212", "-") for words in cells.all_inner_texts()]
+
+
+def looked_at(tab):
+    """Move a slider and look at all that follows from it."""
+    assert known(tab, "Mass, t")[2] == ""
+    press(tab, "Thickness", times=5)
+    holds(tab, thickness="1.05")
+    now, before, change = known(tab, "Mass, t")
+    assert float(now) > float(before)
+    assert change.startswith("+")
+    for name, kind in (("Lift and drag", ".title"), ("Layers and webs", ".piece")):
+        click(tab, name)
+        tab.wait_for_selector(f".section {kind}")
+
+
+def test_figures_and_charts_follow_a_slider_that_rests(opened, answering):
+    looked_at(opened("?blade=nrel5mw&at=0.6"))
+
+
+@pytest.mark.nightly
+def test_figures_come_from_a_process_of_their_own(opened, monkeypatch):
+    monkeypatch.undo()
+    looked_at(opened("?blade=nrel5mw&at=0.6"))
 
 
 @pytest.mark.parametrize(
@@ -443,7 +495,7 @@ def test_all_is_in_view_and_all_has_a_name(opened, width, height):
 
 
 def test_an_export_that_fails_is_said_and_the_page_goes_on(opened, monkeypatch):
-    def submit(worker, job):
+    def submit(worker, make, job):
         failed = Future()
         failed.set_exception(StudioError("the disk is full"))
         return failed

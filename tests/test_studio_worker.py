@@ -14,16 +14,18 @@ from bladegen.errors import StudioError
 from bladegen.exports.options import Kind
 from bladegen.exports.registry import FORMATS, Format
 from bladegen.measures import checks
+from bladegen.studio.process import Worker
 from bladegen.studio.state import State
-from bladegen.studio.worker import Job, Worker, formats, make
+from bladegen.studio.worker import Job, formats, load, make
 
 LONG = 600.0  # s; far more than is needed, for machines that are busy
 STUDIO = """
 import os, time
-from bladegen.studio.worker import Worker
+from bladegen.studio.process import Worker
+from bladegen.studio.worker import load
 
 if __name__ == "__main__":
-    print(Worker().begin().submit(os.getpid).result(), flush=True)
+    print(Worker(load).begin().submit(os.getpid).result(), flush=True)
     time.sleep(3600)
 """
 MOVED = State("nrel5mw", (0.03, -0.02, 0.01, 0.005), thickness=1.05)
@@ -85,17 +87,19 @@ def test_a_job_that_cannot_be_done_is_one_error(tmp_path):
 
 
 def test_a_process_that_died_is_replaced(tmp_path):
-    worker = Worker()
+    worker = Worker(load)
     try:
         pool = worker.begin()
         victim = pool.submit(os.getpid).result(timeout=LONG)
         os.kill(victim, signal.SIGKILL)
         with pytest.raises(BrokenProcessPool):
             pool.submit(os.getpid).result(timeout=LONG)
-        made = worker.submit(Job("nrel5mw", MOVED, ".stl", str(tmp_path))).result(timeout=LONG)
+        made = worker.submit(make, Job("nrel5mw", MOVED, ".stl", str(tmp_path))).result(
+            timeout=LONG
+        )
         assert made.path.endswith(".stl")
         with pytest.raises(StudioError, match="neither a bundled blade"):
-            worker.submit(Job("gone", MOVED, ".stl", str(tmp_path))).result(timeout=LONG)
+            worker.submit(make, Job("gone", MOVED, ".stl", str(tmp_path))).result(timeout=LONG)
         last = worker.begin().submit(os.getpid).result(timeout=LONG)
         worker.begin().submit(time.sleep, 3600)
     finally:

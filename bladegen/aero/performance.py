@@ -12,7 +12,14 @@ import numpy as np
 from bladegen.aero.elements import Elements
 from bladegen.support.arrays import Array, Indices
 
-__all__ = ["PITCHES", "RATIOS", "Performance", "coefficients", "performance"]
+__all__ = [
+    "PITCHES",
+    "RATIOS",
+    "Performance",
+    "angles_of_attack",
+    "coefficients",
+    "performance",
+]
 
 RATIOS = np.linspace(3.0, 14.0, 23)
 PITCHES = np.radians(np.linspace(-5.0, 7.0, 13))
@@ -61,14 +68,9 @@ def coefficients(
     ratios, pitch : (b, c) arrays
         Tip speed ratios, and pitch [rad].
     """
-    from bladegen.aero.momentum import loads
-
     radius, end = elements.radius, elements.tip_radius[:, None]
-    given = (radius, elements.chord, elements.twist, elements.cone)
     cases = np.broadcast_arrays(ratios, pitch)
-    found: Array = np.empty((*cases[0].shape, radius.shape[1], 4))
-    even = [np.ascontiguousarray(part, dtype=np.float64) for part in (*given, *cases, *polars)]
-    loads(*even[:4], blades, *even[4:], found)
+    found = _solved(elements, polars, blades, *cases)
     normal, tangential = found[..., 0], found[..., 1]
     weights = 0.5 * (
         np.diff(radius, axis=1, append=end) + np.diff(radius, axis=1, prepend=radius[:, :1])
@@ -82,6 +84,34 @@ def coefficients(
     disc = np.pi * end**2
     power = blades * torque * cases[0] / (disc * end)
     return np.stack([power, blades * thrust / disc, moment / (disc * end)], axis=-1)
+
+
+def angles_of_attack(
+    elements: Elements, polars: tuple[Array, Array], blades: int, ratios: Array, pitch: Array
+) -> Array:
+    """Return angles of attack (b, c, k) from the chord lines [rad]; NaN at root and tip.
+
+    Parameters are those of `coefficients`.
+    """
+    cases = np.broadcast_arrays(ratios, pitch)
+    inflow = _solved(elements, polars, blades, *cases)[..., 3]
+    found: Array = inflow - elements.twist[:, None] - cases[1][..., None]
+    found[..., [0, -1]] = np.nan
+    return found
+
+
+def _solved(
+    elements: Elements, polars: tuple[Array, Array], blades: int, ratios: Array, pitch: Array
+) -> Array:
+    """Return what `momentum.loads` finds, (b, c, k, 4)."""
+    from bladegen.aero.momentum import loads
+
+    radius = elements.radius
+    given = (radius, elements.chord, elements.twist, elements.cone, ratios, pitch, *polars)
+    found: Array = np.empty((*ratios.shape, radius.shape[1], 4))
+    even = [np.ascontiguousarray(part, dtype=np.float64) for part in given]
+    loads(*even[:4], blades, *even[4:], found)
+    return found
 
 
 def performance(

@@ -1,6 +1,5 @@
 """What lies inside the skin as a diagram: layers over span and arc, and on some sections."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,42 +7,16 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.errors import ExportError
 from bladegen.layup.laid import Laid
-from bladegen.layup.outlines import Outlines
+from bladegen.layup.pieces import Section, section
 from bladegen.plots.figures import dress, figure_of, titled
 from bladegen.plots.style import CATEGORIES, FAINT, INK
-from bladegen.support.arrays import Array
 
 __all__ = ["layup"]
 
 SHOWN = (0.15, 0.4, 0.7)  # span fractions of the sections
 TIMES = 4  # as thick as they are, in the lower row
-SPANS, POINTS = 401, 1201
+SPANS = 401
 WHOLE = 0.98  # of the arc, covered by a layer: no strip of it is drawn over the span
-
-
-@dataclass(frozen=True, eq=False)
-class _Skin:
-    """A section's outline (n, 2) [m] from the nose, inward normals, and fractions of the arc."""
-
-    points: Array
-    inward: Array
-    fraction: Array
-
-    @classmethod
-    def of(cls, blade: Blade, eta: float) -> "_Skin":
-        outlines = Outlines.of(blade, np.array([eta]))
-        at = np.linspace(0.0, 1.0, POINTS)
-        own = float(blade.chord(eta)) * blade.profiles(np.array([eta]))[0]
-        along = outlines.fractions[0]
-        points = np.stack([np.interp(at, along, own[:, i]) for i in (0, 1)], axis=-1)
-        step = np.gradient(points, axis=0)
-        normal = step[:, ::-1] * (-1.0, 1.0)
-        return cls(points, normal / np.linalg.norm(normal, axis=-1, keepdims=True), at)
-
-    def at(self, fraction: float) -> Array:
-        """Return the point at a fraction of the arc."""
-        own = (np.interp(fraction, self.fraction, self.points[:, i]) for i in (0, 1))
-        return np.array([*own])
 
 
 def layup(blade: Blade, baseline: Blade | None = None) -> Any:
@@ -65,12 +38,11 @@ def layup(blade: Blade, baseline: Blade | None = None) -> Any:
     grid = drawn.add_gridspec(3, len(SHOWN), height_ratios=[1.3, 1.0, 1.0])
     strips = drawn.add_subplot(grid[0, :])
     _strips(strips, inside.structure, own.layup.at(np.linspace(0.0, 1.0, SPANS)), colours)
-    laid = own.layup.at(np.array(SHOWN))
     for k, eta in enumerate(SHOWN):
-        skin = _Skin.of(own, eta)
+        laid = own.layup.at(np.array([eta]))
         for row, times in ((1, 1), (2, TIMES)):
             axis = drawn.add_subplot(grid[row, k])
-            _section(axis, inside.structure, laid, k, skin, colours, times)
+            _section(axis, section(own, eta, times=times, laid=laid), colours)
             said = "to scale" if times == 1 else f"layers {times} times as thick"
             axis.set(title=f"eta {eta:g}, {said}", xlabel="along the chord, m", ylabel="m")
     for axis in drawn.axes:
@@ -113,40 +85,11 @@ def _strips(axis: Any, structure: Any, laid: Laid, colours: dict[str, str]) -> N
     )
 
 
-def _section(
-    axis: Any, structure: Any, laid: Laid, k: int, skin: _Skin, colours: dict[str, str], times: int
-) -> None:
+def _section(axis: Any, drawn: Section, colours: dict[str, str]) -> None:
     """Draw a section's layers from the outside to the inside, and its webs."""
-    depth = np.zeros(len(skin.fraction))
-    walls = {web.name: 0.0 for web in structure.webs}
-    for i, layer in enumerate(structure.layers):
-        thickness = times * float(laid.thickness[i, k])
-        start, end = laid.arcs[i, k]
-        if not thickness > 0.0:
-            continue
-        colour = colours[layer.material]
-        if layer.web:
-            walls[layer.web] += thickness
-            _wall(axis, skin, (start, end), walls[layer.web] - 0.5 * thickness, thickness, colour)
-            continue
-        on = np.flatnonzero((skin.fraction >= start) & (skin.fraction <= end))
-        outer, normal = skin.points[on], skin.inward[on]
-        first, last = (outer + normal * d[:, None] for d in (depth[on], depth[on] + thickness))
-        axis.fill(*np.concatenate([first, last[::-1]]).T, color=colour, linewidth=0)
-        depth[on] += thickness
-    axis.plot(*skin.points.T, color=INK, linewidth=0.7)
+    for piece in drawn.pieces:
+        axis.fill(*piece.border.T, color=colours[piece.material], linewidth=0)
+    axis.plot(*drawn.outline.T, color=INK, linewidth=0.7)
     axis.set_aspect("equal", adjustable="datalim")
     axis.grid(False)
     axis.axhline(0.0, color=FAINT, linewidth=0.6, zorder=0)
-
-
-def _wall(
-    axis: Any, skin: _Skin, feet: tuple[float, float], off: float, thickness: float, colour: str
-) -> None:
-    """Draw a layer of a web between two places on the skin, beside those drawn before."""
-    first, last = (skin.at(place) for place in feet)
-    along = (last - first) / np.linalg.norm(last - first)
-    beside = np.array([-along[1], along[0]])
-    near, far = (d * beside for d in (off - 0.5 * thickness, off + 0.5 * thickness))
-    corners = np.array([first + near, last + near, last + far, first + far])
-    axis.fill(*corners.T, color=colour, linewidth=0)

@@ -146,7 +146,7 @@ def serve(
                     told(Serving(_address(sock, host, token), stop))
                     server.run(sockets=[sock])
             finally:
-                studio.worker.end()
+                studio.end()
 
 
 @contextmanager

@@ -3,9 +3,11 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from bladegen.studio import worker
 from bladegen.studio.library import Library
+from bladegen.studio.process import Worker
+from bladegen.studio.results import answers
 from bladegen.studio.visits import Visits
-from bladegen.studio.worker import Worker
 
 __all__ = ["Studio"]
 
@@ -22,8 +24,8 @@ class Studio:
         The blades.
     first : str
         The blade that is shown at first.
-    worker : Worker
-        Makes files.
+    worker, knower : Worker
+        Makes files; answers what takes longer than a frame.
     packets : dict
         The latest surface of each tab and its baseline's, by a name that nobody can guess.
     visits : Visits
@@ -33,6 +35,12 @@ class Studio:
     folder: Path
     library: Library
     first: str
-    worker: Worker = field(default_factory=Worker)
+    worker: Worker = field(default_factory=lambda: Worker(worker.load))
+    knower: Worker = field(default_factory=lambda: Worker(answers.load))
     packets: dict[str, tuple[bytes, bytes]] = field(default_factory=dict)
     visits: Visits = field(default_factory=Visits)
+
+    def end(self) -> None:
+        """Stop its processes."""
+        self.worker.end()
+        self.knower.end()

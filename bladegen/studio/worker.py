@@ -1,16 +1,10 @@
-"""Writing a state's files in a process of its own, so that sliders stay quick meanwhile.
+"""Writing a state's files, in a process of its own so that sliders stay quick meanwhile.
 
-A job says everything that the other process needs; what it is doing it writes into a small
+A job says everything that the process needs; what it is doing it writes into a small
 text file, which the page reads while it waits.
 """
 
-import os
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from functools import lru_cache
-from multiprocessing import active_children, get_context
-from multiprocessing.process import BaseProcess
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile
 
@@ -19,13 +13,10 @@ from bladegen.exports import registry
 from bladegen.exports.exporters import aside, write
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
-from bladegen.formats.reading import read
-from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.studio.loft import Loft
-from bladegen.studio.model import Baseline
+from bladegen.studio.results.question import opened
 from bladegen.studio.state import State
 
-__all__ = ["FIRST", "Job", "Made", "Worker", "formats", "make"]
+__all__ = ["FIRST", "Job", "Made", "formats", "load", "make"]
 
 FIRST = (".step", ".stl", ".glb", ".yaml")
 ALIAS = "the same as"
@@ -96,7 +87,7 @@ def _made(job: Job) -> Made:
         job.told.write_text(message, encoding="utf-8")
 
     told("reading the blade")
-    baseline = _baseline(job.source, job.airfoils, job.state.loft)
+    baseline = opened(job.source, job.airfoils, job.state.loft)
     variant = baseline.variant(job.state)
     path = Path(job.folder) / f"{baseline.stem(job.state)}{job.suffix}"
     told(f"making {job.suffix.lstrip('.').upper()}")
@@ -119,53 +110,6 @@ def _together(path: Path, job: Job) -> Path:
     return archive
 
 
-@lru_cache(2)
-def _baseline(source: str, airfoils: str | None, loft: Loft) -> Baseline:
-    """Return a blade; what lies under a source in a studio's folder never changes."""
-    definition = read(source, airfoils=airfoils)
-    return Baseline(source, loft.blade(definition), ShapeSpace.bundled())
-
-
-class Worker:
-    """One process that makes files, started when it is first needed."""
-
-    def __init__(self) -> None:
-        self._pool: ProcessPoolExecutor | None = None
-        self._processes: set[BaseProcess] = set()
-
-    def begin(self) -> ProcessPoolExecutor:
-        """Start the process, if it is not there, and let it load what it will need."""
-        if self._pool is None:
-            others = set(active_children())
-            self._pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
-            self._pool.submit(_load, os.getpid())
-            self._processes = set(active_children()) - others
-        return self._pool
-
-    def submit(self, job: Job) -> "Future[Made]":
-        """Queue a job; a process that has died is replaced."""
-        try:
-            return self.begin().submit(make, job)
-        except BrokenProcessPool:
-            self.end()
-            return self.begin().submit(make, job)
-
-    def end(self) -> None:
-        """Stop the process, whatever it is making: nobody waits for it any more."""
-        if self._pool is not None:
-            self._pool.shutdown(wait=False, cancel_futures=True)
-            self._pool = None
-        for process in self._processes:
-            process.terminate()
-        self._processes = set()
-
-
-def _load(parent: int) -> None:
-    """Import what is slow to import; leave the other processors to the page."""
-    from bladegen.support.workers import end_with
-
-    end_with(parent)
+def load() -> None:
+    """Import what solids need, before somebody asks for one."""
     import cadquery  # noqa: F401
-    from threadpoolctl import threadpool_limits
-
-    threadpool_limits(1)

@@ -6,6 +6,7 @@ from typing import Any
 
 from bladegen.studio.library import UPLOAD_BYTES, UPLOAD_FILES, UPLOADS
 from bladegen.studio.page.buttons import button
+from bladegen.studio.page.downloads import export
 from bladegen.studio.page.tab import Page
 from bladegen.studio.worker import formats
 
@@ -64,10 +65,10 @@ def bar(page: Page) -> None:
         with (
             ui.dropdown_button("Export", icon="download", auto_close=True, color=None)
             .props('unelevated dense no-caps no-wrap padding="4px 12px" aria-label="Export a file"')
-            .classes("primary") as export
+            .classes("primary") as menu
         ):
             for suffix, words in formats().items():
-                with ui.item(on_click=lambda suffix=suffix: page.export(suffix)) as item:
+                with ui.item(on_click=lambda suffix=suffix: export(page, suffix)) as item:
                     item.props(f'dense aria-label="Export {suffix}: {words}"').classes("format")
                     ui.html(f"<b>{suffix}</b> {escape(words)}", sanitize=False)
         button("contrast", "Light or dark").on("click", js_handler="() => Quasar.Dark.toggle()")
@@ -79,7 +80,7 @@ def bar(page: Page) -> None:
         undo.set_enabled(bool(page.history.before))
         redo.set_enabled(bool(page.history.undone))
         reset.set_enabled(page.state != page.state.reset())
-        export.set_enabled(page.scene is None or page.scene.valid)
+        menu.set_enabled(page.scene is None or page.scene.valid)
 
     page.followers.append(follow)
     select.on_value_change(lambda event: page.pick(event.value))

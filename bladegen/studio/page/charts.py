@@ -5,36 +5,20 @@ its light or dark theme; what a chart shows is also said in words, for those who
 """
 
 from dataclasses import dataclass
-from html import escape
-from math import floor, log10
 
 import numpy as np
 
+from bladegen.studio.page.drawing.svg import line, path, picture, text, ticks
 from bladegen.studio.scene import Scene
 from bladegen.support.arrays import Array
 
-__all__ = ["planform", "section", "ticks"]
+__all__ = ["planform", "section"]
 
 SECTION_SIZE = 480, 210
 PLANFORM_SIZE = 480, 260
 MARGIN = 32, 16, 20, 18  # of one plot: left, right, top, bottom
 GAP = 0.06  # of a plot's height, left free above and below the curves
-FLAT = 1e-9
 ROOMY = 1.08
-
-
-def ticks(low: float, high: float, count: int = 4) -> list[float]:
-    """Return about `count` round numbers within an interval, steps of 1, 2 or 5.
-
-    >>> ticks(0.0, 5.8)
-    [0.0, 2.0, 4.0]
-    """
-    raw = max(high - low, FLAT) / count
-    scale = 10.0 ** floor(log10(raw))
-    step = next(m * scale for m in (1.0, 2.0, 5.0, 10.0) if m * scale >= raw * (1.0 - FLAT))
-    first = int(np.ceil(low / step - FLAT))
-    last = int(np.floor(high / step + FLAT))
-    return [round(k * step, 12) for k in range(first, last + 1)]
 
 
 def section(scene: Scene, plain: Scene, *, placed: bool = False) -> str:
@@ -64,9 +48,9 @@ def section(scene: Scene, plain: Scene, *, placed: bool = False) -> str:
     lines = []
     for value in ticks(middle[0] - half, middle[0] + half, 5):
         x = at(np.array([value, 0.0]))[0]
-        lines.append(_line(x, 0, x, height - 16))
+        lines.append(line(x, 0, x, height - 16))
         unit = f"{value:g} m" if placed else f"{100 * value:.0f} %"
-        lines.append(_text(x, height - 4, unit))
+        lines.append(text(x, height - 4, unit))
     k = scene.place
     now_here, before_here = (
         f"chord {s.chord[k]:.3f} m, thickness {s.thickness[k]:.1f} %, twist {s.twist[k]:.2f} deg"
@@ -76,10 +60,10 @@ def section(scene: Scene, plain: Scene, *, placed: bool = False) -> str:
         f"Section at {100 * scene.eta[k]:.0f} % of the span, "
         f"{scene.sections[k, :, 2].mean():.1f} m from the root: {now_here}; baseline: {before_here}"
     )
-    return _svg(
+    return picture(
         SECTION_SIZE,
         words,
-        [*lines, _path(at(before), "before"), _path(at(now), "now", closed=True)],
+        [*lines, path(at(before), "before"), path(at(now), "now", closed=True)],
     )
 
 
@@ -114,7 +98,7 @@ def planform(scene: Scene, plain: Scene) -> str:
             f"{plot.label} {now.min():.2f} to {now.max():.2f} {plot.unit} "
             f"(baseline {before.min():.2f} to {before.max():.2f})"
         )
-    return _svg(PLANFORM_SIZE, "Over span: " + "; ".join(words), parts)
+    return picture(PLANFORM_SIZE, "Over span: " + "; ".join(words), parts)
 
 
 def _plot(
@@ -142,36 +126,16 @@ def _plot(
     ]
     for value in ticks(low, high, 3):
         x, y = at(np.zeros(1), np.array([value]))[0]
-        parts.append(_line(x, y, x + box[0], y))
-        parts.append(_text(x - 5, y + 3, f"{value:g}", "end"))
+        parts.append(line(x, y, x + box[0], y))
+        parts.append(text(x - 5, y + 3, f"{value:g}", "end"))
     for share in (0.0, 0.5, 1.0):
         x, y = at(np.array([share]), np.array([low]))[0]
-        parts.append(_text(x, y + 13, f"{100 * share:.0f} %"))
+        parts.append(text(x, y + 13, f"{100 * share:.0f} %"))
     mark = at(np.full(2, scene.state.at), np.array([low, high]))
     eta = scene.eta
     return [
         *parts,
-        _path(mark, "mark"),
-        _path(at(eta, before), "before"),
-        _path(at(eta, now), "now"),
+        path(mark, "mark"),
+        path(at(eta, before), "before"),
+        path(at(eta, now), "now"),
     ]
-
-
-def _svg(size: tuple[int, int], words: str, parts: list[str]) -> str:
-    return (
-        f'<svg class="chart" viewBox="0 0 {size[0]} {size[1]}" role="img" '
-        f'aria-label="{escape(words)}">{"".join(parts)}</svg>'
-    )
-
-
-def _path(points: Array, kind: str, *, closed: bool = False) -> str:
-    words = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-    return f'<path class="{kind}" d="M{words}{"Z" if closed else ""}"/>'
-
-
-def _line(x0: float, y0: float, x1: float, y1: float) -> str:
-    return f'<path class="grid" d="M{x0:.1f},{y0:.1f} {x1:.1f},{y1:.1f}"/>'
-
-
-def _text(x: float, y: float, words: str, anchor: str = "middle") -> str:
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{words}</text>'

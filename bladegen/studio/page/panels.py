@@ -5,10 +5,13 @@ from dataclasses import replace
 from html import escape
 from typing import Any
 
-from bladegen.studio.controls import AFFINE, END, START, Control
+from bladegen.studio.controls import AFFINE, END, START
 from bladegen.studio.page.bar import bar, key
-from bladegen.studio.page.buttons import button, toggle
-from bladegen.studio.page.elements import number, stage
+from bladegen.studio.page.buttons import toggle
+from bladegen.studio.page.elements import stage
+from bladegen.studio.page.figures import figures
+from bladegen.studio.page.numbers import number_of, own_number
+from bladegen.studio.page.section import section
 from bladegen.studio.page.tab import Page, Shown
 
 __all__ = ["build"]
@@ -46,14 +49,14 @@ def build(page: Page) -> None:
             _sliders(page)
             checks = _checks()
         legend = _view(page)
-        section = _section(page)
+        profile = section(page)
         with ui.element("section").classes("card planform").props('aria-label="Planform"'):
             ui.html("Over span", tag="h2", sanitize=False)
             planform = ui.html("", sanitize=False).classes("plot")
     ui.keyboard(on_key=lambda event: key(page, event), ignore=["input", "select", "textarea"])
 
     def charts(shown: Shown) -> None:
-        section.set_content(shown.section)
+        profile(shown)
         planform.set_content(shown.planform)
         checks(shown)
         legend(shown)
@@ -71,45 +74,13 @@ def _sliders(page: Page) -> None:
     ui.html("Shape", tag="h2", sanitize=False)
     for name, control in page.controls.items():
         if name.startswith("t") and name[1:].isdigit():
-            _plain_number(page, control)
+            own_number(page, control)
     ui.html("Size and planform", tag="h2", sanitize=False)
     for control in AFFINE:
-        _plain_number(page, control)
+        own_number(page, control)
     ui.html("Along the span", tag="h2", sanitize=False)
     _window(page)
     _choices(page)
-
-
-def _plain_number(page: Page, control: Control) -> None:
-    name = control.name
-    _number(page, control, lambda: page.state.value(name), lambda value: page.set(name, value))
-
-
-def _number(
-    page: Page, control: Control, now: Callable[[], float], act: Callable[[Any], None]
-) -> None:
-    """Put a number that shows `now` and acts when it is moved."""
-    element = number(control, now())
-    shown: dict[str, float | None] = {"value": now()}
-
-    def moved(event: Any) -> None:
-        shown["value"] = event.args
-        act(event.args)
-
-    def typed(event: Any) -> None:
-        shown["value"] = None
-        act(event.args)
-        follow()
-
-    def follow() -> None:
-        if shown["value"] != now():
-            shown["value"] = now()
-            element.run_method("put", now())
-
-    element.on("move", moved)
-    element.on("type", typed)
-    element.on("settle", page.pause, [])
-    page.followers.append(follow)
 
 
 def _window(page: Page) -> None:
@@ -125,8 +96,8 @@ def _window(page: Page) -> None:
     def end(value: Any) -> None:
         page.set_window(now()[0], value)
 
-    _number(page, START, lambda: now()[0], start)
-    _number(page, END, lambda: now()[1], end)
+    number_of(page, START, lambda: now()[0], start)
+    number_of(page, END, lambda: now()[1], end)
 
 
 def _choices(page: Page) -> None:
@@ -194,6 +165,7 @@ def _view(page: Page) -> Callable[[Shown], None]:
                 button.on_click(lambda view=view: page.stage.run_method("look", view))
             toggle("palette", "Colour what lies off the baseline", True, page.stage, "paint")
             toggle("grid_on", "Outline of the baseline", False, page.stage, "overlay")
+        figures(page)
         with ui.element("div").classes("legend") as legend:
             ui.label("off the baseline, along its normal")
             ui.element("i")
@@ -215,28 +187,3 @@ def _view(page: Page) -> Callable[[Shown], None]:
         )
 
     return show
-
-
-def _section(page: Page) -> Any:
-    from nicegui import ui
-
-    with ui.element("section").classes("card section").props('aria-label="Section"'):
-        with ui.element("div").classes("head"):
-            _plain_number(page, page.controls["at"])
-            words = ui.label().classes("figure")
-            placed = button("straighten", "As it stands in the blade, in metres")
-            placed.props("aria-pressed=false")
-        drawing = ui.html("", sanitize=False).classes("plot")
-
-    def turn() -> None:
-        page.place(not page.placed)
-        placed.props(f"aria-pressed={str(page.placed).lower()}")
-
-    placed.on_click(turn)
-
-    def follow() -> None:
-        length = page.studio.library.baseline(page.state.blade, page.state.loft).blade.length
-        words.set_text(f"{page.state.at * length:.1f} m")
-
-    page.followers.append(follow)
-    return drawing

@@ -8,9 +8,7 @@ and what comes out is shown at once: surface, charts, checks, buttons and the ta
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from secrets import token_urlsafe
-from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
@@ -20,14 +18,12 @@ from bladegen.studio import recipes
 from bladegen.studio.controls import Control, controls
 from bladegen.studio.loft import Loft
 from bladegen.studio.page import charts
+from bladegen.studio.page.live import Live
 from bladegen.studio.scene import Scene
 from bladegen.studio.shared import Studio
 from bladegen.studio.state import History, State, from_query, to_query
-from bladegen.studio.worker import Job, Made
 
 __all__ = ["Page", "Shown"]
-
-POLL = 0.1  # s, between two looks at what a job is doing
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +58,7 @@ class Page:
         self.followers: list[Callable[[], None]] = []
         self.stage: Any = None
         self.charts: Callable[[Shown], None] = lambda _: None
+        self.live = Live(studio, lambda: self.client.is_deleted)
         self._wanted: State | None = None
         self._working = False
         self._count = 0
@@ -227,6 +224,7 @@ class Page:
         self.scene = shown.scene
         self.studio.packets[self.name] = shown.packets
         self._count += 1
+        self.live.ask(shown.scene.state)
         self.studio.worker.begin()  # it needs some seconds, and somebody may export soon
         place = f"/studio/{self.name}/{self._count}"
         self.stage.run_method("show", f"{place}/now", f"{place}/baseline" if refit else "")
@@ -247,40 +245,6 @@ class Page:
             recipes.shell(state, entry, stem),
             recipes.python(state, entry, stem),
         )
-
-    async def export(self, suffix: str) -> None:
-        """Make a file and hand it to the browser, saying meanwhile what is being done."""
-        from nicegui import ui
-
-        state = self.state
-        folder = Path(mkdtemp(prefix="file-", dir=self.studio.folder))
-        entry = self.studio.library.entry(state.blade)
-        job = Job(entry.source, state, suffix, str(folder), entry.airfoils)
-        kind = suffix.lstrip(".").upper()
-        with self.client:
-            note = ui.notification(f"{kind}: starting", spinner=True, timeout=None)
-        try:
-            made = await self._awaited(job, note, kind)
-        except (BladegenError, RuntimeError) as error:
-            self.say(str(error), bad=True)
-        else:
-            path = Path(made.path)
-            with self.client:
-                ui.download.file(path, path.name)
-            self.say(
-                made.remark or f"{path.name}, {path.stat().st_size / 1e6:.1f} MB",
-                bad=bool(made.remark),
-            )
-        finally:
-            note.dismiss()
-
-    async def _awaited(self, job: Job, note: Any, kind: str) -> Made:
-        future = self.studio.worker.submit(job)
-        while not future.done():
-            await asyncio.sleep(POLL)
-            if job.told.is_file():
-                note.message = f"{kind}: {job.told.read_text(encoding='utf-8')}"
-        return future.result()
 
     def say(self, words: str, *, bad: bool = False) -> None:
         """Show one line for a while."""

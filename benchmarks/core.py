@@ -23,7 +23,7 @@ from bladegen.airfoils import landmarks
 from bladegen.blade.changes.affine_change import AffineChange
 from bladegen.blade.changes.window import Window
 from bladegen.blade.lofting.paths import PATHS
-from bladegen.variants.batch import SectionBatch
+from bladegen.blade.variants.batch import SectionBatch
 
 SPANS = 100
 RUNS, SLOW = 41, 9

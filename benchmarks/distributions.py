@@ -18,12 +18,12 @@ from figures import asked, figure
 
 import bladegen as bg
 from bladegen.airfoils.landmarks import landmarks
+from bladegen.blade.variants.designs import DESIGNS, DISTRIBUTED
 from bladegen.curves.crossing import crossing_sections
 from bladegen.formats.baselines import baselines
 from bladegen.shapes import cst
 from bladegen.shapes.densities import KINDS
 from bladegen.shapes.shape_space import FILES
-from bladegen.variants.designs import DESIGNS, DISTRIBUTED
 
 DRAWS, VARIANTS, SWEEPS, STEPS = 2000, 192, 200, 11
 SEED = 7

@@ -24,8 +24,8 @@ from bladegen.support.threads import one_thread
 
 PARTS = {
     "NeuralFoil": ("neuralfoil/main.py", "get_aero_from_kulfan_parameters"),
-    "fit of Kulfan's parameters": ("aero/kulfan.py", "kulfan"),
-    "momentum theory": ("aero/performance.py", "coefficients"),
+    "fit of Kulfan's parameters": ("blade/aero/kulfan.py", "kulfan"),
+    "momentum theory": ("blade/aero/performance.py", "coefficients"),
     "layup": ("labels/mass.py", "computed"),
 }
 

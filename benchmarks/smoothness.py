@@ -21,7 +21,7 @@ from bladegen.cad import exchange, solids
 from bladegen.measures.fairness import fairness
 from bladegen.measures.inflections import inflections
 from bladegen.measures.smoothness import edge_bulges
-from bladegen.plots import combs
+from bladegen.views.plots import combs
 
 TOLERANCES = (0.05e-3, 1e-3)
 UNITS = {"poles": "", "STEP": "MB", "largest deviation": "mm", "RMS deviation": "mm"}

@@ -118,7 +118,7 @@ _SERVICES = {  # what values offer, and the modules that do it
     "definition_html": "views.notebook",
     "export": "exports.exporters",
     "family_html": "views.notebook",
-    "layup": "layup.layup",
+    "layup": "blade.layup.layup",
     "plot_blade": "exports.pictures",
     "space_html": "views.notebook",
     "trimesh_of": "surface.mesh_files",

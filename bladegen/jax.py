@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.adapters.outputs import Outputs
 from bladegen.errors import MissingLibraryError, PerturbationError
 from bladegen.families.dataset.loading import LoadedFamily
+from bladegen.parametric.adapters.outputs import Outputs
 from bladegen.parametric.model import ParametricBlade
 
 try:

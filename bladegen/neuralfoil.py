@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.aero.kulfan import KULFAN, WEIGHTS, in_chords, kulfan
+from bladegen.blade.aero.kulfan import KULFAN, WEIGHTS, in_chords, kulfan
 from bladegen.errors import BladegenError, MissingLibraryError
 from bladegen.support.arguments import numbers
 from bladegen.support.arrays import Array

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.adapters.outputs import SECTIONS, UNITS, Evaluated, Outputs, follows
 from bladegen.errors import MissingLibraryError, PerturbationError
+from bladegen.parametric.adapters.outputs import SECTIONS, UNITS, Evaluated, Outputs, follows
 from bladegen.parametric.model import ParametricBlade
 from bladegen.support.arrays import Array
 

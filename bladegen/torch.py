@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.adapters.outputs import Evaluated, Outputs
 from bladegen.errors import MissingLibraryError, PerturbationError
 from bladegen.families.dataset.loading import LoadedFamily
 from bladegen.families.dataset.reading import arrays_at
+from bladegen.parametric.adapters.outputs import Evaluated, Outputs
 from bladegen.parametric.model import ParametricBlade
 
 try:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import bladegen as bg
-from bladegen.plots import figures, style
+from bladegen.views.plots import figures, style
 
 NOISE, POINTS, SEED, STEPS = 2e-3, 120, 3, 12  # m, points a section
 SPANS = np.linspace(0.3, 0.98, 25)

@@ -11,10 +11,10 @@ import pyvista as pv
 from PIL import Image
 
 import bladegen as bg
-from bladegen.plots import style
 from bladegen.surface.grids import grid
 from bladegen.surface.tips import round_tip
 from bladegen.views import preview
+from bladegen.views.plots import style
 
 COLOURS = {
     "suction side": "#b9c6d2",

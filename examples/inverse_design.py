@@ -14,8 +14,8 @@ import numpy as np
 import torch
 
 import bladegen as bg
-from bladegen.plots import figures, style
 from bladegen.torch import BladeFunction
+from bladegen.views.plots import figures, style
 
 STEPS, BATCH, TESTED, SEED = 400, 48, 200, 1
 BOUNDS = {"pga": (-0.06, 0.06), "thickness": (0.85, 1.15)}

@@ -17,7 +17,7 @@ from scipy.optimize import minimize
 import bladegen as bg
 from bladegen.curves import polygons
 from bladegen.neuralfoil import coefficients
-from bladegen.plots import figures, style
+from bladegen.views.plots import figures, style
 
 SPAN, ALPHA, REYNOLDS = 0.8, np.radians(6.0), 9e6
 BLADE, SPACE = bg.Blade.from_definition(bg.read("iea15mw")), bg.ShapeSpace.bundled()

@@ -11,8 +11,8 @@ import numpy as np
 import bladegen as bg
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.formats.baselines import baselines
-from bladegen.plots import figures, style
 from bladegen.shapes import affine, cst, grassmann
+from bladegen.views.plots import figures, style
 
 RANKS = np.array([1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24])
 LEARNED, HELD_OUT, SEED = 200, 20, 2022

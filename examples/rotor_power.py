@@ -18,7 +18,7 @@ import openmdao.api as om
 import bladegen as bg
 from bladegen.neuralfoil import coefficients
 from bladegen.openmdao import BladeComponent
-from bladegen.plots import figures, style
+from bladegen.views.plots import figures, style
 
 BLADES, RATIO, REYNOLDS, NETWORK = 3, 9.0, 1e7, "medium"
 SPANS = np.linspace(0.25, 0.97, 10)

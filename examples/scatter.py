@@ -11,8 +11,8 @@ import numpy as np
 import bladegen as bg
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.formats.baselines import baselines
-from bladegen.plots import figures
 from bladegen.shapes import cst
+from bladegen.views.plots import figures
 
 SEED, COUNT = 2022, 1000  # those of the bundled space, so that its coordinates can be used
 

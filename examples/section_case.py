@@ -13,8 +13,8 @@ import numpy as np
 from PIL import Image
 
 import bladegen as bg
-from bladegen.cases.section import SectionCase, section_case
-from bladegen.plots import figures, style
+from bladegen.exports.cases.section import SectionCase, section_case
+from bladegen.views.plots import figures, style
 
 SPAN = 0.7
 

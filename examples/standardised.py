@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 import bladegen as bg
-from bladegen.plots import figures
 from bladegen.shapes import affine
+from bladegen.views.plots import figures
 
 
 def main(target: Path) -> None:

@@ -15,8 +15,8 @@ import bladegen as bg
 from bladegen.airfoils.landmarks import landmarks
 from bladegen.curves.crossing import crossing_sections
 from bladegen.formats.baselines import baselines
-from bladegen.plots import figures
 from bladegen.shapes import cst
+from bladegen.views.plots import figures
 
 SEED, SWEEPS, STEPS, SHOWN = 7, 200, 11, 4
 EVERY = 4  # landmarks are thinned to 101 for the test of validity

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import bladegen as bg
-from bladegen.plots import figures
+from bladegen.views.plots import figures
 
 T = [0.06, -0.05, 0.03, 0.02]  # rad along the four modes
 

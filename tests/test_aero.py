@@ -17,13 +17,13 @@ from test_cli import run
 from test_polars import attached
 
 import bladegen as bg
-from bladegen.aero.elements import Elements, elements_of
-from bladegen.aero.energy import HOURS, Conditions, annual_energy, weibull_shares
-from bladegen.aero.evaluation import SPANS, evaluated, of_polars
-from bladegen.aero.momentum import loads
-from bladegen.aero.performance import coefficients, performance
-from bladegen.aero.section_polars import GRID, polars_of
 from bladegen.airfoils.viterna import around, extended
+from bladegen.blade.aero.elements import Elements, elements_of
+from bladegen.blade.aero.energy import HOURS, Conditions, annual_energy, weibull_shares
+from bladegen.blade.aero.evaluation import SPANS, evaluated, of_polars
+from bladegen.blade.aero.momentum import loads
+from bladegen.blade.aero.performance import coefficients, performance
+from bladegen.blade.aero.section_polars import GRID, polars_of
 from bladegen.blade.blade import Blade
 from bladegen.definition import estimates
 from bladegen.definition.blade_definition import Airfoil, Rotor

@@ -8,11 +8,11 @@ import bladegen as bg
 from bladegen.blade.changes.deformation import AffineChange, Window
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.soundness import Trial
+from bladegen.blade.variants.batch import FAULTS, LOST_THICKNESS, SectionBatch
 from bladegen.curves import polygons
 from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import GeometryError
 from bladegen.shapes import affine
-from bladegen.variants.batch import FAULTS, LOST_THICKNESS, SectionBatch
 
 BLADES = ("iea15mw", "nrel5mw", "dtu10mw")
 SPANS = np.linspace(0.0, 1.0, 37)

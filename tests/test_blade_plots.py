@@ -5,8 +5,8 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen.cli.view import What
 from bladegen.errors import ExportError
-from bladegen.plots import blade_plots, layup_plot, path_plot
 from bladegen.shapes import grassmann
+from bladegen.views.plots import blade_plots, layup_plot, path_plot
 
 
 @pytest.fixture(scope="module")

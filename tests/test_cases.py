@@ -18,14 +18,14 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.blade.edges import Sharp
-from bladegen.cases.cell_measures import non_orthogonality
-from bladegen.cases.conditions import flow_at
-from bladegen.cases.marching import crossed, marched
-from bladegen.cases.poly_mesh import extruded
-from bladegen.cases.section import section_case
 from bladegen.cli.commands import app
 from bladegen.errors import BladegenError, ExportError, GeometryError
 from bladegen.exports import marks
+from bladegen.exports.cases.cell_measures import non_orthogonality
+from bladegen.exports.cases.conditions import flow_at
+from bladegen.exports.cases.marching import crossed, marched
+from bladegen.exports.cases.poly_mesh import extruded
+from bladegen.exports.cases.section import section_case
 from bladegen.surface.wall_spacing import first_height
 
 SMALL = {"cells": 128, "y_plus": 30.0, "growth": 1.3, "radius": 20.0}

@@ -8,8 +8,8 @@ from bladegen.cli import commands
 from bladegen.cli.options.perturbing import Changes
 from bladegen.cli.view import What
 from bladegen.errors import BladegenError
-from bladegen.plots.blade_plots import PLOTS
 from bladegen.views import preview, sweep
+from bladegen.views.plots.blade_plots import PLOTS
 from bladegen.views.rendering import keys
 
 pytestmark = pytest.mark.usefixtures("foreign_here")

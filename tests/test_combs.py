@@ -8,8 +8,8 @@ import bladegen as bg
 from bladegen.airfoils.landmarks import contour
 from bladegen.cli.options.common import Making
 from bladegen.errors import BladegenError, ExportError
-from bladegen.plots import combs
-from bladegen.plots.style import BASELINE, VARIANT
+from bladegen.views.plots import combs
+from bladegen.views.plots.style import BASELINE, VARIANT
 from strategies import ellipse
 
 

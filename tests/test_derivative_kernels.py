@@ -16,10 +16,10 @@ from bladegen.airfoils import characteristics
 from bladegen.airfoils.landmarks import landmarks, uniform
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.edges import MinimumThickness, Sharp
+from bladegen.blade.variants import nose_measures, section_measures, sizes
 from bladegen.curves import plane_maps
 from bladegen.parametric import coefficient_kernels, edge_slopes, kernels, section_slopes
 from bladegen.support import compiled
-from bladegen.variants import nose_measures, section_measures, sizes
 from strategies import box, ellipse
 
 CHAIN = (

@@ -6,9 +6,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.stats import kstest
 
 import bladegen as bg
+from bladegen.blade.variants.designs import DESIGNS, Design, tabulated
+from bladegen.blade.variants.factors import Factors, factors
 from bladegen.errors import DesignError
-from bladegen.variants.designs import DESIGNS, Design, tabulated
-from bladegen.variants.factors import Factors, factors
 
 SPACE = bg.ShapeSpace.bundled()
 WHAT = factors(SPACE, {"thickness": (0.9, 1.1), "twist": (-0.05, 0.05)})
@@ -145,7 +145,7 @@ def test_variants_are_drawn_one_by_one_as_they_are_all_at_once(kind):
 def test_sobol_points_are_scipys_beyond_a_page():
     from scipy.stats import qmc
 
-    from bladegen.variants.draws import PAGE, sobol
+    from bladegen.blade.variants.draws import PAGE, sobol
 
     whole = qmc.Sobol(3, rng=np.random.default_rng(9)).random_base2(16)
     index = np.array([0, PAGE - 1, PAGE, 3 * PAGE + 5, 2**16 - 1])

@@ -12,6 +12,8 @@ from scipy.spatial import ConvexHull
 
 import bladegen as bg
 from bladegen.airfoils.landmarks import uniform
+from bladegen.blade.variants.designs import DISTRIBUTED, Design
+from bladegen.blade.variants.factors import factors
 from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import DesignError, MissingLibraryError, SpaceError
 from bladegen.formats.baselines import baselines
@@ -20,8 +22,6 @@ from bladegen.shapes.database import build_space
 from bladegen.shapes.distributions import KINDS
 from bladegen.shapes.ellipsoids import smallest
 from bladegen.shapes.shape_space import FILES
-from bladegen.variants.designs import DISTRIBUTED, Design
-from bladegen.variants.factors import factors
 
 UNIFORM = ("box", "ellipsoid", "hull")
 

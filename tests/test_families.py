@@ -6,8 +6,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
+from bladegen.blade.variants.designs import tabulated
 from bladegen.errors import BladegenError, FamilyError
-from bladegen.variants.designs import tabulated
 
 SPACE = bg.ShapeSpace.bundled()
 

@@ -19,11 +19,11 @@ from bladegen.airfoils.landmarks import landmarks, uniform
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.changes.deformation import AffineChange, Window
 from bladegen.blade.edges import MinimumThickness
+from bladegen.blade.variants import kernels, nose_measures, section_measures, sizes
+from bladegen.blade.variants.batch import SectionBatch
 from bladegen.curves import plane_maps, polygons
 from bladegen.curves.crossing import crossing_sections
 from bladegen.support import compiled
-from bladegen.variants import kernels, nose_measures, section_measures, sizes
-from bladegen.variants.batch import SectionBatch
 from strategies import airfoils, box, ellipse
 
 COUNT = 101
@@ -54,10 +54,10 @@ def plain():
         loaded_looks = loaded(characteristics, **{"bladegen.curves.plane_maps": maps})
         looks = {"bladegen.airfoils.characteristics": loaded_looks}
         measured = loaded(section_measures, **looks)
-        measured_by = {"bladegen.variants.section_measures": measured}
-        fronts = {"bladegen.variants.nose_measures": loaded(nose_measures, **measured_by)}
+        measured_by = {"bladegen.blade.variants.section_measures": measured}
+        fronts = {"bladegen.blade.variants.nose_measures": loaded(nose_measures, **measured_by)}
         inner = loaded(sizes, **fronts)
-        return loaded(kernels, **{"bladegen.variants.sizes": inner})
+        return loaded(kernels, **{"bladegen.blade.variants.sizes": inner})
     finally:
         numba.config.DISABLE_JIT = False
         sys.modules.update(known)
@@ -206,7 +206,7 @@ def _twice(x):
 
 
 def test_a_package_that_may_not_be_written_keeps_its_kernels_with_the_user(tmp_path):
-    code = "from bladegen.variants import kernels; print(kernels.made.stats.cache_path)"
+    code = "from bladegen.blade.variants import kernels; print(kernels.made.stats.cache_path)"
     run = subprocess.run(
         [sys.executable, "-c", code],
         env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},

@@ -13,8 +13,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from test_cli import run as command
 
 import bladegen as bg
-from bladegen.aero.evaluation import evaluated
-from bladegen.aero.kulfan import in_chords
+from bladegen.blade.aero.evaluation import evaluated
+from bladegen.blade.aero.kulfan import in_chords
 from bladegen.definition.blade_definition import Rotor
 from bladegen.errors import FamilyError
 from bladegen.families.additions.later_labels import add_labels

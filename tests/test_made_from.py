@@ -19,9 +19,9 @@ from bladegen.exports import marks
 from bladegen.exports.definitions import write_into
 from bladegen.exports.inventory import made_by
 from bladegen.exports.provenance import made_from
-from bladegen.plots.figures import figure, save_figure, save_pages
 from bladegen.support.files import digest_of
 from bladegen.views import page, sweep
+from bladegen.views.plots.figures import figure, save_figure, save_pages
 
 SOURCE = Path(bg.read("nrel5mw").source)
 WAYS = ("x.yaml", "x.htc", "x.dat", "x.csv", "x.xlsx", "airfoils")

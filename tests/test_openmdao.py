@@ -10,9 +10,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.adapters.outputs import follows
 from bladegen.errors import PerturbationError
 from bladegen.openmdao import BladeComponent
+from bladegen.parametric.adapters.outputs import follows
 from bladegen.parametric.parameters import AFFINE
 
 PARAMETERS = (("pga", (0.3, 0.6, 0.9)), ("chord", (0.3, 0.9)), ("twist", (0.3, 0.9)), "thickness")

@@ -23,10 +23,10 @@ from bladegen.measures import properties
 from bladegen.measures.fairness import fairness
 from bladegen.measures.inflections import inflections
 from bladegen.measures.smoothness import creases, edge_bulges, edge_widths
-from bladegen.plots import combs
 from bladegen.shapes import affine, cst
 from bladegen.surface.grids import grid, grid_quality
 from bladegen.surface.tips import flat_tip, round_tip
+from bladegen.views.plots import combs
 
 PAGES = Path(__file__).parents[1] / "docs"
 NAMES = {"DTU 10 MW": "dtu10mw", "IEA 15 MW": "iea15mw", "NREL 5 MW": "nrel5mw"}

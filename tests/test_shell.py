@@ -15,13 +15,13 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import bladegen as bg
+from bladegen.blade.layup.shell.inp import FORCE, GRAVITY, inp_lines, nodal_thickness
+from bladegen.blade.layup.shell.laminates import even, plane_stiffness
+from bladegen.blade.layup.shell.model import shell_model
+from bladegen.blade.layup.shell.quality import ETA, XI, corner_normals, slopes
 from bladegen.cli import commands
 from bladegen.definition.structure.positions import Arc
 from bladegen.errors import ExportError, GeometryError
-from bladegen.layup.shell.inp import FORCE, GRAVITY, inp_lines, nodal_thickness
-from bladegen.layup.shell.laminates import even, plane_stiffness
-from bladegen.layup.shell.model import shell_model
-from bladegen.layup.shell.quality import ETA, XI, corner_normals, slopes
 
 constant = bg.Distribution.constant
 GLASS = bg.Material("glass", 1900.0, (4e10, 1e10, 1e10), (4e9, 4e9, 3e9), (0.28, 0.3, 0.3),

@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.aero.evaluation import evaluated
-from bladegen.aero.performance import coefficients
+from bladegen.blade.aero.evaluation import evaluated
+from bladegen.blade.aero.performance import coefficients
 from bladegen.curves import polygons
 from bladegen.errors import MissingLibraryError
 from bladegen.studio.page.drawing.layers import layers

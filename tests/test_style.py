@@ -11,7 +11,7 @@ import pytest
 from matplotlib import colormaps
 from matplotlib.colors import to_rgb
 
-from bladegen.plots import style
+from bladegen.views.plots import style
 
 BLINDNESS = {
     "none": np.eye(3),

@@ -10,8 +10,8 @@ from scipy.interpolate import CubicSpline
 from bladegen.airfoils import thickest as places
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
 from bladegen.airfoils.slopes import SplineSlopes
+from bladegen.blade.variants import section_measures
 from bladegen.curves.cubics import Cubics
-from bladegen.variants import section_measures
 from strategies import few, naca
 
 COUNTS = (101, 401)

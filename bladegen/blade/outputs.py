@@ -155,7 +155,7 @@ def volume(blade: Any) -> float:
 
 
 def layup(blade: Any) -> Any:
-    """What lies inside the skin on the blade's sections (`bladegen.layup.layup.Layup`), or None."""
+    """What lies inside the skin on its sections (`bladegen.blade.layup.layup.Layup`), or None."""
     return service("layup")(blade)
 
 

@@ -123,13 +123,13 @@ def family(
     ] = False,
 ) -> None:
     """Make a family of perturbed blades: sections, a manifest, files and a contact sheet."""
+    from bladegen.blade.variants import kernels
     from bladegen.cli.options.parsing import factor_bounds, factor_table, span_window
     from bladegen.families.family import family as plan
     from bladegen.families.order import Order
     from bladegen.families.run import run
     from bladegen.shapes.shape_space import ShapeSpace
     from bladegen.support.compiled import is_kept
-    from bladegen.variants import kernels
 
     words = [word for text in formats or [] for word in text.split(",")]
     graph = GRAPH in (word.strip().lower() for word in words)

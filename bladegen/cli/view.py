@@ -261,9 +261,9 @@ def plot(
     airfoils' combs. A perturbed blade is drawn over its baseline.
     """
     from bladegen.exports.marks import marked
-    from bladegen.plots.blade_plots import PLOTS, drawable
-    from bladegen.plots.figures import SUFFIXES, save_figure, save_pages
     from bladegen.support.files import folder, require_suffix, safe_stem
+    from bladegen.views.plots.blade_plots import PLOTS, drawable
+    from bladegen.views.plots.figures import SUFFIXES, save_figure, save_pages
 
     wanted = list(dict.fromkeys(what or [What.all]))
     shown, baseline = _shown(making.blade(blade, landmarks), changes, mirror)

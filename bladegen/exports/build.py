@@ -28,12 +28,12 @@ from bladegen.exports.registry import FORMATS, format_of, suffix_of
 from bladegen.formats import writing as writers
 from bladegen.measures import checks
 from bladegen.measures.spanwise import spanwise, write_csv
-from bladegen.plots import combs
 from bladegen.support.files import alone, folder, replacing, safe_stem
 from bladegen.surface import mesh_files
 from bladegen.surface.deviation import Deviation
 from bladegen.surface.grids.grid_quality import grid_figures
 from bladegen.version import __version__
+from bladegen.views.plots import combs
 
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
 

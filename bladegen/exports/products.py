@@ -6,14 +6,14 @@ from functools import cached_property
 from pathlib import Path
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.layup.layup import Layup
+from bladegen.blade.layup.shell.model import ShellModel, shell_model
 from bladegen.cad import solids
 from bladegen.cad.structure import assembly
 from bladegen.errors import ExportError, Finding
 from bladegen.exports import marks
 from bladegen.exports.options import Kind, Options
 from bladegen.exports.provenance import Provenance, made_from
-from bladegen.layup.layup import Layup
-from bladegen.layup.shell.model import ShellModel, shell_model
 from bladegen.surface import mesh
 from bladegen.surface.grids import grid
 from bladegen.surface.tips import flat_tip

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bladegen.blade.layup.shell.inp import inp_lines
 from bladegen.cad import curves, exchange
 from bladegen.cad.structure import assembly
 from bladegen.errors import ExportError
@@ -20,7 +21,6 @@ from bladegen.exports.definitions import marking
 from bladegen.exports.options import UNITS, Kind
 from bladegen.exports.products import Products
 from bladegen.formats import writing
-from bladegen.layup.shell.inp import inp_lines
 from bladegen.support.arguments import suggestion
 from bladegen.support.plugins import Offered, guarded, offered
 from bladegen.surface import gltf, mesh_files

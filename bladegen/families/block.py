@@ -6,9 +6,9 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.blade.spans import reflected
+from bladegen.blade.variants.batch import Batch
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.values import brief
-from bladegen.variants.batch import Batch
 
 __all__ = ["Block"]
 

@@ -16,6 +16,11 @@ import numpy as np
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import RANGES, Window
+from bladegen.blade.variants.batch import SectionBatch
+from bladegen.blade.variants.designs import Design
+from bladegen.blade.variants.draws import Seed
+from bladegen.blade.variants.factors import factors
+from bladegen.blade.variants.verdicts import THINNEST
 from bladegen.errors import FamilyError, PlaceError
 from bladegen.families import members
 from bladegen.families.block import Block
@@ -25,11 +30,6 @@ from bladegen.support.arguments import instance, one_of, whole
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import safe_stem
 from bladegen.support.values import state_of
-from bladegen.variants.batch import SectionBatch
-from bladegen.variants.designs import Design
-from bladegen.variants.draws import Seed
-from bladegen.variants.factors import factors
-from bladegen.variants.verdicts import THINNEST
 
 __all__ = ["BLOCK", "POLICIES", "Family", "family"]
 

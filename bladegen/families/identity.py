@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.variants.designs import Design
 from bladegen.errors import FamilyError
 from bladegen.exports.provenance import fingerprint
 from bladegen.families.family import Family
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array
-from bladegen.variants.designs import Design
 from bladegen.version import __version__
 
 __all__ = ["fingerprint", "identity", "require_same"]

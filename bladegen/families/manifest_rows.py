@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from bladegen.blade.variants.draws import WIDEST
 from bladegen.curves import polygons
 from bladegen.families.block import Block
 from bladegen.families.family import Family
 from bladegen.measures.spanwise import UNITS
-from bladegen.variants.draws import WIDEST
 
 __all__ = ["drawn_again", "rows_of", "sections_digest"]
 

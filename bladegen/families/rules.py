@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.changes.deformation import AffineChange
+from bladegen.blade.variants.batch import SectionBatch
+from bladegen.blade.variants.factors import Factors
+from bladegen.blade.variants.verdicts import leaving, strayed, unsound
 from bladegen.support.arrays import Array, Indices, Mask
-from bladegen.variants.batch import SectionBatch
-from bladegen.variants.factors import Factors
-from bladegen.variants.verdicts import leaving, strayed, unsound
 
 __all__ = ["Rules"]
 

@@ -11,12 +11,12 @@ import numpy as np
 
 from bladegen.blade.changes.affine_change import WHOLE, AffineChange, faded
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp, least_width
+from bladegen.blade.variants.batch import SectionBatch
 from bladegen.errors import PerturbationError
 from bladegen.parametric.parameters import AFFINE, Parameters
 from bladegen.parametric.planform_slopes import CHORD, OFFSET, PREBEND, TWIST, PlacedSlopes
 from bladegen.support.arguments import shown
 from bladegen.support.arrays import Array
-from bladegen.variants.batch import SectionBatch
 
 __all__ = ["Chain", "change_of"]
 

@@ -9,6 +9,8 @@ from math import sqrt
 
 import numpy as np
 
+from bladegen.blade.variants.section_measures import Section
+from bladegen.blade.variants.sizes import sizing
 from bladegen.curves.plane_maps import (
     Numbers,
     carried,
@@ -21,8 +23,6 @@ from bladegen.curves.plane_maps import (
 from bladegen.parametric.section_slopes import LEAD_X, gradients, sized_slopes, turning
 from bladegen.support.arrays import Array
 from bladegen.support.compiled import compiled
-from bladegen.variants.section_measures import Section
-from bladegen.variants.sizes import sizing
 
 __all__ = ["linearised", "lines_slopes"]
 

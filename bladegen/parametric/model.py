@@ -22,6 +22,8 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.changes.window import Window
 from bladegen.blade.perturbation import Where
 from bladegen.blade.spans import around, span_fractions
+from bladegen.blade.variants.batch import Batch, SectionBatch
+from bladegen.blade.variants.verdicts import strayed, unsound
 from bladegen.errors import PerturbationError
 from bladegen.parametric import outputs
 from bladegen.parametric.chain import change_of
@@ -32,8 +34,6 @@ from bladegen.parametric.quantities import Quantities
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import instance, numbers, shown
 from bladegen.support.arrays import Array, ArrayLike, Mask, readonly
-from bladegen.variants.batch import Batch, SectionBatch
-from bladegen.variants.verdicts import strayed, unsound
 
 __all__ = ["ParametricBlade"]
 

@@ -10,8 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
+from bladegen.blade.variants.batch import SectionBatch
 from bladegen.support.arrays import Array
-from bladegen.variants.batch import SectionBatch
 
 __all__ = ["Outline"]
 

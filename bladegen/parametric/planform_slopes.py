@@ -21,9 +21,9 @@ from bladegen.blade.planform import (
     running_product,
     turn,
 )
+from bladegen.blade.variants.placing import Placing
 from bladegen.errors import PerturbationError
 from bladegen.support.arrays import Array
-from bladegen.variants.placing import Placing
 
 __all__ = ["CHORD", "OFFSET", "PREBEND", "TWIST", "PlacedSlopes"]
 

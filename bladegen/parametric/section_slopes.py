@@ -20,10 +20,7 @@ from math import sqrt
 
 import numpy as np
 
-from bladegen.curves.plane_maps import Numbers, distance, inverted
-from bladegen.support.arrays import Array
-from bladegen.support.compiled import compiled
-from bladegen.variants.nose_measures import (
+from bladegen.blade.variants.nose_measures import (
     leveled,
     mean_weights,
     middle_of,
@@ -32,7 +29,7 @@ from bladegen.variants.nose_measures import (
     share_of,
     squared,
 )
-from bladegen.variants.section_measures import (
+from bladegen.blade.variants.section_measures import (
     Section,
     along_contour,
     basis,
@@ -41,6 +38,9 @@ from bladegen.variants.section_measures import (
     peak,
     thickest,
 )
+from bladegen.curves.plane_maps import Numbers, distance, inverted
+from bladegen.support.arrays import Array
+from bladegen.support.compiled import compiled
 
 __all__ = ["LEAD_X", "LEAD_Y", "REACH", "THICKNESS", "gradients", "sized_slopes", "turning"]
 

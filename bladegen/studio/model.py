@@ -14,14 +14,14 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import AffineChange, Window
 from bladegen.blade.sanity import KINDS
+from bladegen.blade.variants.batch import FAULTS, Batch, SectionBatch
+from bladegen.blade.variants.verdicts import THINNEST
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.controls import AFFINE
 from bladegen.studio.scene import Check, Curves, Scene
 from bladegen.studio.state import State
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.files import safe_stem
-from bladegen.variants.batch import FAULTS, Batch, SectionBatch
-from bladegen.variants.verdicts import THINNEST
 
 __all__ = ["Baseline", "changes"]
 

@@ -13,8 +13,8 @@ import numpy as np
 from bladegen.measures import distances
 from bladegen.measures.sides import Side, surface_of
 from bladegen.measures.surfaces import Surface
-from bladegen.plots.style import INK, STATION
 from bladegen.support.arrays import Array
+from bladegen.views.plots.style import INK, STATION
 from bladegen.views.preview import quietly, require_renderer
 from bladegen.views.rendering.blade_scene import MILLIMETRES
 from bladegen.views.rendering.cameras import VIEWS

@@ -8,11 +8,11 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import RenderError
-from bladegen.plots.figures import DPI, dress, figure_of, save_figure
-from bladegen.plots.style import BASELINE, INK, VARIANT
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.files import replacing
 from bladegen.views import preview
+from bladegen.views.plots.figures import DPI, dress, figure_of, save_figure
+from bladegen.views.plots.style import BASELINE, INK, VARIANT
 
 __all__ = ["contact_sheet"]
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.fitting.deviations import DeviationMap
-from bladegen.plots.figures import figure, save_figure
-from bladegen.plots.style import DIVERGING
 from bladegen.support.arrays import Array
+from bladegen.views.plots.figures import figure, save_figure
+from bladegen.views.plots.style import DIVERGING
 
 __all__ = ["SUFFIXES", "figures_of", "write"]
 

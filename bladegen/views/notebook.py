@@ -15,8 +15,8 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import visible
-from bladegen.plots.blade_plots import overview
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.views.plots.blade_plots import overview
 from bladegen.views.tables import digits
 
 __all__ = ["blade_html", "definition_html", "family_html", "space_html"]

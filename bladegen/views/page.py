@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import RenderError
-from bladegen.plots import style
 from bladegen.support.arrays import Array
 from bladegen.support.files import require_suffix
+from bladegen.views.plots import style
 from bladegen.views.rendering import keys
 from bladegen.views.rendering.cameras import ANGLE, VIEWS
 from bladegen.views.rendering.drawing import HEADLIGHT, LIGHTS, shaded

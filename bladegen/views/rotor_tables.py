@@ -4,8 +4,8 @@ from dataclasses import asdict
 
 import numpy as np
 
-from bladegen.aero.energy import HOURS
-from bladegen.aero.evaluation import Evaluation, gigawatt_hours, sure
+from bladegen.blade.aero.energy import HOURS
+from bladegen.blade.aero.evaluation import Evaluation, gigawatt_hours, sure
 from bladegen.views.tables import digits
 
 __all__ = [

@@ -14,13 +14,13 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import RANGES
+from bladegen.blade.variants.factors import factors
 from bladegen.errors import ExportError, RenderError, visible
-from bladegen.plots import style
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
-from bladegen.variants.factors import factors
+from bladegen.views.plots import style
 from bladegen.views.rendering.blade_scene import DISTANCE, MILLIMETRES
 from bladegen.views.rendering.cameras import VIEWS, View
 from bladegen.views.rendering.drawing import (

@@ -8,7 +8,7 @@ from bladegen.definition.blade_definition import BladeDefinition, Distribution
 from bladegen.support.arrays import Array
 
 if TYPE_CHECKING:
-    from bladegen.layup.layup import Layup
+    from bladegen.blade.layup.layup import Layup
     from bladegen.shapes.shape_space import ShapeSpace
 
 __all__ = [

@@ -17,9 +17,9 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import RenderError
 from bladegen.measures import fairness
 from bladegen.measures.patches import Patch
-from bladegen.plots import style
 from bladegen.support.arrays import Array, ArrayLike
 from bladegen.views.comparison import surface_of
+from bladegen.views.plots import style
 from bladegen.views.rendering.picture import save_image
 from bladegen.views.rendering.renderer import image_of, quietly, require_renderer
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from bladegen.blade.layup.layup import Layup
 from bladegen.cad import pieces, shaping, step_documents
 from bladegen.cad.pieces import Patch
 from bladegen.cad.shapes import MILLIMETRES, area
@@ -19,7 +20,6 @@ from bladegen.cad.solids import Solid, cap, closed, edge_strip
 from bladegen.cad.step_documents import Part
 from bladegen.cad.structure.zones import Bay, bays_of
 from bladegen.errors import Finding
-from bladegen.layup.layup import Layup
 from bladegen.support.arrays import Array
 from bladegen.surface.regions import EDGE, ROOT, TIP, colour
 

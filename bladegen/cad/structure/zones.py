@@ -10,11 +10,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from bladegen.blade.layup.layup import Layup
+from bladegen.blade.layup.outlines import Outlines
+from bladegen.blade.layup.shell.lines import mesh_lines
 from bladegen.definition.distribution import united
 from bladegen.definition.structure.structure import Layer, Web
-from bladegen.layup.layup import Layup
-from bladegen.layup.outlines import Outlines
-from bladegen.layup.shell.lines import mesh_lines
 from bladegen.support.arrays import Array
 
 __all__ = ["Bay", "bays_of"]

@@ -79,8 +79,8 @@ def evaluate(
     A changed blade stands beside its baseline. Polars are of its own sections, by NeuralFoil (the
     extra aero); the rotor is rigid, in steady uniform wind, by blade-element momentum theory.
     """
-    from bladegen.aero.energy import Conditions
-    from bladegen.aero.evaluation import evaluated
+    from bladegen.blade.aero.energy import Conditions
+    from bladegen.blade.aero.evaluation import evaluated
     from bladegen.cli.options.parsing import metres
     from bladegen.views import rotor_tables as tables
 
@@ -110,7 +110,7 @@ def evaluate(
     if plot is not None:
         from bladegen.exports.marks import marked
         from bladegen.exports.provenance import drawn_of
-        from bladegen.plots.rotor_plot import draw
+        from bladegen.views.plots.rotor_plot import draw
 
         with marked(plot, drawn_of(blades[-1], command=COMMAND.get())) as temporary:
             draw(found, names, temporary)

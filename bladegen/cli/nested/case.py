@@ -60,9 +60,9 @@ def case_openfoam(
 
     Speed and angle are by default those at the rotor's rated speed and best tip speed ratio.
     """
-    from bladegen.cases.section import section_case
     from bladegen.cli.options.parsing import radians
     from bladegen.errors import BladegenError
+    from bladegen.exports.cases.section import section_case
 
     if section is None:
         raise BladegenError(

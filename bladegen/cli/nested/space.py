@@ -117,9 +117,9 @@ def plot_space(
     space: SpaceFile = None,
 ) -> None:
     """Draw a shape space: its modes, its spectrum and its data."""
-    from bladegen.plots.figures import draw_space
     from bladegen.shapes.shape_space import ShapeSpace
     from bladegen.support.files import replacing
+    from bladegen.views.plots.figures import draw_space
 
     loaded = ShapeSpace.load(space) if space else ShapeSpace.bundled()
     with replacing(output) as temporary:

@@ -9,12 +9,12 @@ import numpy as np
 
 from bladegen.blade.changes.deformation import Coordinates, Window
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp, TrailingEdge
+from bladegen.blade.variants.designs import Design, tabulated
 from bladegen.errors import BladegenError, DesignError, FileError
 from bladegen.formats.common.text_file import decimal_of, delimiter_of, text_of
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import suggestion
 from bladegen.support.files import content_of
-from bladegen.variants.designs import Design, tabulated
 
 __all__ = [
     "coordinates",

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from bladegen.blade.variants.members import Batch
 from bladegen.errors import FamilyError
 from bladegen.families.additions.unfinished import note, unfinished
 from bladegen.families.block import Block
@@ -31,7 +32,6 @@ from bladegen.families.processes import in_threads
 from bladegen.support.arguments import whole
 from bladegen.support.files import replacing
 from bladegen.support.threads import one_thread
-from bladegen.variants.members import Batch
 
 __all__ = ["add_labels"]
 

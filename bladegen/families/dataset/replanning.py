@@ -8,13 +8,13 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import Window
 from bladegen.blade.lofting.paths import DEFAULT
 from bladegen.blade.planform import PLANES
+from bladegen.blade.variants.designs import tabulated
 from bladegen.errors import FamilyError
 from bladegen.families.family import Family
 from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array
-from bladegen.variants.designs import tabulated
 
 __all__ = ["planned_again"]
 

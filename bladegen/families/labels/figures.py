@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.aero.performance import RATIOS
+from bladegen.blade.aero.performance import RATIOS
 
 __all__ = ["ALPHA", "FIGURES", "LABELS", "REYNOLDS", "STORED", "Figure", "axes", "polar_places"]
 

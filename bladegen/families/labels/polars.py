@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.aero.elements import elements_of
-from bladegen.aero.section_polars import polars_of
+from bladegen.blade.aero.elements import elements_of
+from bladegen.blade.aero.section_polars import polars_of
 from bladegen.blade.spans import reflected
 from bladegen.families.block import Block
 from bladegen.families.family import Family

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.aero.elements import Elements, elements_of
-from bladegen.aero.energy import Conditions
-from bladegen.aero.evaluation import SPANS, conditions_of, evaluate, gigawatt_hours, sure
+from bladegen.blade.aero.elements import Elements, elements_of
+from bladegen.blade.aero.energy import Conditions
+from bladegen.blade.aero.evaluation import SPANS, conditions_of, evaluate, gigawatt_hours, sure
+from bladegen.blade.variants.batch import SectionBatch
 from bladegen.families.block import Block
 from bladegen.families.family import Family
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.values import state_of
-from bladegen.variants.batch import SectionBatch
 
 __all__ = ["RotorLabel"]
 

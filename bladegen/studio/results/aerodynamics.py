@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.aero.elements import Elements, elements_of
-from bladegen.aero.evaluation import SPANS, conditions_of, hub_radius_of, reynolds_of
-from bladegen.aero.performance import angles_of_attack, coefficients, performance
-from bladegen.aero.section_polars import polars_of
+from bladegen.blade.aero.elements import Elements, elements_of
+from bladegen.blade.aero.evaluation import SPANS, conditions_of, hub_radius_of, reynolds_of
+from bladegen.blade.aero.performance import angles_of_attack, coefficients, performance
+from bladegen.blade.aero.section_polars import polars_of
 from bladegen.blade.blade import Blade
 from bladegen.definition.estimates import ANGLES
 from bladegen.errors import BladegenError

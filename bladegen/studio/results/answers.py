@@ -11,9 +11,9 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.layup.layup import Layup
+from bladegen.blade.layup.pieces import Section, section
 from bladegen.errors import BladegenError, PerturbationError
-from bladegen.layup.layup import Layup
-from bladegen.layup.pieces import Section, section
 from bladegen.studio.results.aerodynamics import Lift, Rotor, Working
 from bladegen.studio.results.question import Question
 from bladegen.studio.state import State
@@ -147,7 +147,7 @@ def _layup(blade: Blade) -> Layup:
 
 def load() -> None:
     """Import what answers need, before somebody asks."""
-    from bladegen.aero import momentum  # noqa: F401
+    from bladegen.blade.aero import momentum  # noqa: F401
 
     try:
         import neuralfoil  # noqa: F401

@@ -6,9 +6,9 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import visible
-from bladegen.plots import style
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh, surface
+from bladegen.views.plots import style
 from bladegen.views.rendering.drawing import signed_distances
 from bladegen.views.rendering.scene import Field, Label, Layer, Scene
 

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.plots import style
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
+from bladegen.views.plots import style
 from bladegen.views.rendering.cameras import ANGLE, View, camera
 from bladegen.views.rendering.scene import Field
 

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.plots.style import INK
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
 from bladegen.surface.mesh import TriangleMesh, surface
 from bladegen.surface.regions import REGIONS
 from bladegen.surface.vtk_files import save
+from bladegen.views.plots.style import INK
 from bladegen.views.rendering.blade_scene import scene_of, thinning
 from bladegen.views.rendering.cameras import VIEWS, perspective
 from bladegen.views.rendering.drawing import (

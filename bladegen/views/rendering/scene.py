@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.errors import RenderError
-from bladegen.plots import style
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
+from bladegen.views.plots import style
 
 __all__ = ["Field", "Label", "Layer", "Scene", "reach_of"]
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.plots.style import INK, STATION
+from bladegen.views.plots.style import INK, STATION
 from bladegen.views.rendering import keys
 from bladegen.views.rendering.cameras import VIEWS
 from bladegen.views.rendering.drawing import (

@@ -91,7 +91,7 @@ class Written:
 
     def _on(self, grid: Array) -> Any:
         from bladegen.blade.blade import Blade
-        from bladegen.layup.outlines import Outlines
+        from bladegen.blade.layup.outlines import Outlines
 
         if b"" not in self.outlines:
             self.outlines[b""] = Blade.from_definition(self.definition, landmarks=LANDMARKS)
@@ -115,7 +115,7 @@ class Written:
 
         It is the plane's own where that line is the one it is given from, or lies there as well.
         """
-        from bladegen.layup.outlines import beside_axis
+        from bladegen.blade.layup.outlines import beside_axis
 
         axis, own = self.definition.axis, plane.offset
         low, high = own.grid[0], own.grid[-1]

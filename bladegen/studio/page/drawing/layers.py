@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bladegen.layup.pieces import Section
+from bladegen.blade.layup.pieces import Section
 from bladegen.studio.page.drawing.svg import line, path, picture, text, ticks
 from bladegen.support.arrays import Array
 

@@ -43,7 +43,7 @@ STAMPS = """() => {
 }"""
 DRAWN = '.stage[data-drawn]:not([data-drawn="0"])'
 KEYS = {
-    "Shape 1": "ArrowRight",
+    "Shape 1 [rad]": "ArrowRight",
     "Thickness": "ArrowRight",
     "Twist [deg]": "ArrowLeft",
     "Prebend": "ArrowLeft",
@@ -155,7 +155,12 @@ def main():
         tab.wait_for_selector(DRAWN, timeout=120_000)
         tab.evaluate(STAMPS)
         for name, key in KEYS.items():
-            figure("from slider to picture", name, "ms", latencies(tab, name, key, moves))
+            figure(
+                "from slider to picture",
+                name.removesuffix(" [rad]"),
+                "ms",
+                latencies(tab, name, key, moves),
+            )
         if asked.pictures:
             shots(browser, served[0].address, asked.blade, asked.pictures)
         browser.close()

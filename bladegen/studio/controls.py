@@ -11,9 +11,16 @@ from typing import Any
 from bladegen.errors import StudioError
 from bladegen.shapes.shape_space import ShapeSpace
 
-__all__ = ["AFFINE", "AT", "CONTROLS", "END", "START", "Control", "controls"]
+__all__ = ["AFFINE", "AT", "CONTROLS", "END", "MODES", "START", "Control", "controls"]
 
 SHAPE_STEP = "0.001"
+# what the bundled space's modes do to a section of the same relative thickness, upward on a slider
+MODES = (
+    ("fuller suction side", "Suction side fuller, pressure side flatter: more camber"),
+    ("aft loading", "Pressure side more hollow towards the tail, which is thinner"),
+    ("fuller front", "Suction side fuller in front, the thickest place forward: less camber"),
+    ("sharper nose", "Nose sharper, sides fuller behind it"),
+)
 
 
 @dataclass(frozen=True)
@@ -30,6 +37,8 @@ class Control:
         Shown behind the label.
     keyword : str
         What `Blade.perturbed` calls it.
+    effect : str
+        What it does, in two or three words shown below the label.
     """
 
     name: str
@@ -41,6 +50,7 @@ class Control:
     default: Decimal = Decimal(1)
     unit: str = ""
     keyword: str = ""
+    effect: str = ""
 
     def parsed(self, value: object) -> float:
         """Return a number on the control's grid.
@@ -118,12 +128,16 @@ def controls(space: ShapeSpace) -> dict[str, Control]:
         f"t{k + 1}": Control(
             f"t{k + 1}",
             f"Shape {k + 1}",
-            f"Along principal geodesic {k + 1}",
+            f"{does}; along principal geodesic {k + 1}",
             (Decimal(float(low)) / step).to_integral_value(ROUND_CEILING) * step,
             (Decimal(float(high)) / step).to_integral_value(ROUND_FLOOR) * step,
             step,
             Decimal(0),
+            unit="rad",
+            effect=effect,
         )
-        for k, (low, high) in enumerate(zip(space.lower, space.upper, strict=True))
+        for k, (low, high, (effect, does)) in enumerate(
+            zip(space.lower, space.upper, MODES, strict=True)
+        )
     }
     return shape | CONTROLS

@@ -13,12 +13,12 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import AffineChange, Window
-from bladegen.blade.sanity import KINDS
-from bladegen.blade.variants.batch import FAULTS, Batch, SectionBatch
+from bladegen.blade.variants.batch import Batch, SectionBatch
 from bladegen.blade.variants.verdicts import THINNEST
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.studio.checks.verdicts import Measured, checks
 from bladegen.studio.controls import AFFINE
-from bladegen.studio.scene import Check, Curves, Scene
+from bladegen.studio.scene import Check, Curves, Scene, flattened
 from bladegen.studio.state import State
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.files import safe_stem
@@ -134,6 +134,21 @@ class Baseline:
                 break
         return state
 
+    def peek(self, state: State, mode: int) -> tuple[Array, float]:
+        """Return the section looked at, moved along a mode by minus, nothing and plus a step.
+
+        Profiles (3, n, 2) as `Scene.profile` has them, and the step: one standard deviation of
+        the space's data [rad].
+        """
+        step = float(np.sqrt(self.space.variances[mode]))
+        t = np.tile(state.t, (3, 1))
+        t[:, mode] += step * np.array([-1.0, 0.0, 1.0])
+        _, change = self._asked(state)
+        batch = self._sections(state).evaluate(t, change, tested=False)
+        place = int(np.argmin(np.abs(self.eta - state.at)))
+        rows = zip(batch.sections[:, place], batch.chord[:, place], strict=True)
+        return np.stack([flattened(section, float(chord)) for section, chord in rows]), step
+
     def variant(self, state: State) -> Blade:
         """Return the blade of a state, tested; what the checks call odd is among its findings.
 
@@ -160,57 +175,19 @@ class Baseline:
         return safe_stem(f"{self.blade.name}-variant" if state.changed else self.blade.name)
 
     def _checks(self, state: State, batch: Batch, deviation: Array) -> tuple[Check, ...]:
-        faults, thickness = batch.faults[0], batch.relative_thickness[0]
-        crossing, broken = faults == FAULTS.index("crosses itself"), faults > 0
-        thin = int(np.argmin(thickness))
-        left = np.flatnonzero(self._left(state))
-        odd = self._sections(state).oddities(batch.looks)
-        strange = np.flatnonzero(odd.kinds[0])
-        out, into = (
-            np.unravel_index(f(deviation), deviation.shape) for f in (np.argmax, np.argmin)
+        sections = self._sections(state)
+        assert sections.domain is not None  # a baseline has a space
+        found = Measured(
+            self.eta,
+            batch,
+            deviation,
+            sections.oddities(batch.looks),
+            sections.domain,
+            sections.step(np.array([state.t]))[0],
+            np.sqrt(self.space.variances[: self.space.dimension]),
+            self._rest[0],
         )
-        far = out if deviation[out] >= -deviation[into] else into
-        thick_enough = thickness[thin] >= THINNEST
-        return (
-            Check(
-                "bad" if broken.any() or not thick_enough else "good",
-                "Valid",
-                f"{FAULTS[faults[np.argmax(broken)]]} at {self._at(np.argmax(broken))}"
-                if broken.any()
-                else "too thin"
-                if not thick_enough
-                else "sound all along",
-            ),
-            Check(
-                "good" if thick_enough else "bad",
-                "Thinnest",
-                f"{100 * thickness[thin]:.1f} % of the chord at {self._at(thin)}",
-            ),
-            Check(
-                "bad" if crossing.any() else "good",
-                "Crossing",
-                f"{np.count_nonzero(crossing)} of {len(faults)} sections",
-            ),
-            Check(
-                "odd" if left.size else "good",
-                "Shape in data",
-                f"leaves the data's range at {self._at(left[0])}" if left.size else "all along",
-            ),
-            Check(
-                "odd" if strange.size else "good",
-                "Airfoils",
-                f"{KINDS[odd.kinds[0, strange[0]]]} at {self._at(strange[0])}"
-                if strange.size
-                else "no odd section",
-            ),
-            Check(
-                "good",
-                "Off baseline",
-                f"{1e3 * deviation[far]:+.0f} mm at {self._at(far[0])}"
-                if abs(deviation[far]) >= 5e-4
-                else "0 mm",
-            ),
-        )
+        return checks(found)
 
     def _left(self, state: State) -> Mask:
         """Tell which sections leave the space's data, (k,)."""
@@ -218,9 +195,6 @@ class Baseline:
         assert sections.domain is not None  # a baseline has a space
         left: Mask = sections.domain.left(sections.step(np.array([state.t])))[0]
         return left
-
-    def _at(self, k: Any) -> str:
-        return f"{100 * self.eta[k]:.0f} % span"
 
 
 def _normals(sections: Array) -> Array:

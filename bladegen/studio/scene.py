@@ -8,14 +8,14 @@ import numpy as np
 from bladegen.studio.state import State
 from bladegen.support.arrays import Array
 
-__all__ = ["Check", "Curves", "Scene"]
+__all__ = ["Check", "Curves", "Scene", "flattened"]
 
 SHOWN_LANDMARKS = 100  # of the surface, about
 
 
 @dataclass(frozen=True)
 class Check:
-    """One line of the live checks: "good", "odd" or "bad", what was looked at, and the figure."""
+    """One line of the live checks: "good", "near", "odd" or "bad", what it looks at, its figure."""
 
     status: str
     what: str
@@ -73,7 +73,7 @@ class Scene:
     @property
     def profile(self) -> Array:
         """The section looked at (n, 2), in chords from its leading edge along its chord."""
-        return _flattened(self.sections[self.place], float(self.curves.chord[self.place]))
+        return flattened(self.sections[self.place], float(self.curves.chord[self.place]))
 
     @property
     def placed(self) -> Array:
@@ -97,7 +97,7 @@ def _thinned(n: int) -> Any:
     return slice(None, None, step if (n - 1) % (2 * step) == 0 else 1)
 
 
-def _flattened(section: Array, chord: float) -> Array:
+def flattened(section: Array, chord: float) -> Array:
     """Return a section in space (n, 3) as (n, 2) in chords: leading edge at 0, upright."""
     edge = 0.5 * (section[0] + section[-1])
     nose = section[np.argmax(np.linalg.norm(section - edge, axis=1))]

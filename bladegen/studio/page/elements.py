@@ -26,11 +26,12 @@ def stage() -> Any:
     return element
 
 
-def number(control: Control, value: float) -> Any:
+def number(control: Control, value: float, *, peeks: bool = False) -> Any:
     """Put a label, a slider and a field for a number on the page that is being built.
 
     Its events: ``move`` with a value while the slider moves, ``settle`` when it is let go, ``type``
-    with the text of the field.  Its method ``put(value)`` shows another value.
+    with the text of the field, ``peek`` when somebody wants to see what it does, if it `peeks`.
+    Its methods: ``put(value)`` shows another value, ``picture(html)`` what it does.
     """
     element = _kind("number")()
     element.props.update(
@@ -43,6 +44,8 @@ def number(control: Control, value: float) -> Any:
         step=float(control.step),
         places=control.places,
         first=value,
+        effect=control.effect,
+        peeks=peeks,
     )
     return element
 

@@ -10,14 +10,14 @@ from bladegen.studio.page.bar import bar, key
 from bladegen.studio.page.buttons import toggle
 from bladegen.studio.page.elements import stage
 from bladegen.studio.page.figures import figures
-from bladegen.studio.page.numbers import number_of, own_number
+from bladegen.studio.page.numbers import number_of, own_number, shape_number
 from bladegen.studio.page.section import section
 from bladegen.studio.page.tab import Page, Shown
 
 __all__ = ["build"]
 
-ICONS = {"good": "check_circle", "odd": "info", "bad": "error"}
-STATUS = {"good": "good", "odd": "worth a look", "bad": "not usable"}
+ICONS = {"good": "check_circle", "near": "warning_amber", "odd": "info", "bad": "error"}
+STATUS = {"good": "good", "near": "near its limit", "odd": "worth a look", "bad": "not usable"}
 LOFTS: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
     "Path": (
         "How stations are joined: smoothly, or by the paper's geodesics",
@@ -72,9 +72,8 @@ def _sliders(page: Page) -> None:
     from nicegui import ui
 
     ui.html("Shape", tag="h2", sanitize=False)
-    for name, control in page.controls.items():
-        if name.startswith("t") and name[1:].isdigit():
-            own_number(page, control)
+    for mode in range(page.studio.library.space.dimension):
+        shape_number(page, page.controls[f"t{mode + 1}"], mode)
     ui.html("Size and planform", tag="h2", sanitize=False)
     for control in AFFINE:
         own_number(page, control)

@@ -5,12 +5,13 @@ uniform wind along the axis, rigid blades.  The bending moment is that of one bl
 out of the plane of rotation.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from bladegen.blade.aero.elements import Elements
-from bladegen.support.arrays import Array, Indices
+from bladegen.support.arrays import Array
 
 __all__ = [
     "PITCHES",
@@ -23,6 +24,8 @@ __all__ = [
 
 RATIOS = np.linspace(3.0, 14.0, 23)
 PITCHES = np.radians(np.linspace(-5.0, 7.0, 13))
+FINER, NEAR = np.linspace(-1.5, 1.5, 9), np.array([-1, 0, 1])
+SIZES = (1.0, 0.25)  # of finer grids, in steps of the first
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +127,8 @@ def performance(
 ) -> Performance:
     """Return what rotors do, at the pitch and the tip speed ratio of the largest power.
 
-    The optimum is the vertex of parabolas through the largest of the grid of `ratios` and
-    `pitches` and its neighbours; coefficients are computed there.
+    The optimum is looked for on finer grids around the largest of that of `ratios` and `pitches`;
+    coefficients are computed there.
     """
     count = len(elements.radius)
     grid = [part.ravel() for part in np.meshgrid(ratios, pitches, indexing="ij")]
@@ -133,9 +136,14 @@ def performance(
     power = coefficients(elements, polars, blades, *cases)[..., 0]
     power = power.reshape(count, len(ratios), len(pitches))
     row, column = np.unravel_index(power.reshape(count, -1).argmax(axis=1), power.shape[1:])
-    rotor = np.arange(count)
-    ratio = _vertex(ratios, power[rotor, :, column], row)
-    pitch = _vertex(pitches, power[rotor, row], column)
+    start = np.stack([ratios[row], pitches[column]], axis=-1)
+    ends = np.array([[ratios[0], pitches[0]], [ratios[-1], pitches[-1]]])
+    ratio, pitch = _highest(
+        lambda at: coefficients(elements, polars, blades, at[..., 0], at[..., 1])[..., 0],
+        start,
+        np.array([ratios[1] - ratios[0], pitches[1] - pitches[0]]),
+        ends,
+    ).T
     own = np.broadcast_to(ratios, (count, len(ratios)))
     all_ratios = np.concatenate([own, ratio[:, None]], axis=1)
     found = coefficients(elements, polars, blades, all_ratios, pitch[:, None])
@@ -143,12 +151,29 @@ def performance(
     return Performance(ratios, power, thrust, moment, pitch, ratio, found[:, -1])
 
 
-def _vertex(x: Array, y: Array, place: Indices) -> Array:
-    """Return where parabolas about places (b,) of values (b, m) at even x (m,) are highest."""
-    middle = np.clip(place, 1, len(x) - 2)
-    low, mid, high = (np.take_along_axis(y, (middle + i)[:, None], 1)[:, 0] for i in (-1, 0, 1))
-    bend = low - 2.0 * mid + high
-    step = np.where(bend < 0.0, 0.5 * (low - high) / np.where(bend < 0.0, bend, -1.0), 0.0)
-    step = np.where(place == middle, np.clip(step, -1.0, 1.0), place - middle)
-    found: Array = x[middle] + step * (x[1] - x[0])
-    return found
+def _highest(value: Callable[[Array], Array], start: Array, step: Array, ends: Array) -> Array:
+    """Return where functions of two variables are highest, (b, 2), near places (b, 2) of a grid.
+
+    Finer grids around the best place so far, and at last the vertex of the paraboloid through its
+    eight neighbours, by least squares: the ridge of power runs across the axes, so that two
+    parabolas along them miss its top by steps of the grid.
+    """
+    points = np.stack(np.meshgrid(FINER, FINER, indexing="ij"), axis=-1).reshape(-1, 2)
+    at, m, rows = start, len(FINER), np.arange(len(start))
+    for size in SIZES:
+        tried = np.clip(at[:, None] + size * step * points, *ends)
+        around = value(tried)
+        best = around.argmax(axis=1)
+        at = tried[rows, best]
+    row, column = (np.clip(part, 1, m - 2) for part in np.divmod(best, m))
+    near = np.add.outer(m * NEAR, NEAR).ravel() + (m * row + column)[:, None]
+    s, t = (part.ravel() for part in np.meshgrid(NEAR, NEAR, indexing="ij"))
+    nine = np.take_along_axis(around, near, axis=1)
+    b, c, d = nine @ s / 6.0, nine @ t / 6.0, nine @ (s * t) / 4.0
+    e, f = nine @ (3.0 * s**2 - 2.0) / 3.0, nine @ (3.0 * t**2 - 2.0) / 3.0
+    bend = e * f - d * d
+    hill = (bend > 0.0) & (e < 0.0)
+    off = np.stack([d * c - f * b, d * b - e * c], axis=-1) / np.where(hill, bend, 1.0)[:, None]
+    vertex = tried[rows, m * row + column] + size * step * (FINER[1] - FINER[0]) * off
+    there = hill & (np.abs(off).max(axis=-1) <= 1.5)
+    return np.where(there[:, None], np.clip(vertex, *ends), at)

@@ -3,6 +3,7 @@
 import json
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -24,6 +25,7 @@ from bladegen.families.order import Order
 from bladegen.families.run import run
 from bladegen.formats.bundled import bundled
 
+OLD = Path(__file__).parent / "version_1_family"  # by bladegen 1.0.0 itself, nrel5mw
 COUNT, SPANS = 70, 16  # more than a shard
 BOUNDS = {"twist": (-0.02, 0.03), "thickness": (0.9, 1.1)}
 
@@ -138,7 +140,28 @@ def test_settings_of_a_bundled_baseline_are_found_again(name, tmp_path):
     assert bg.load_family(tmp_path)[0].name == made[0].name
 
 
-def test_families_of_version_1_are_read(folder, tmp_path):
+def test_what_version_1_wrote_itself_is_read(tmp_path):
+    family = bg.load_family(OLD)
+    assert family.identity["bladegen"] == "1.0.0"
+    assert family["sections"].shape == (3, 9, 401, 3)
+    assert np.ptp(family.parameters, axis=0).min() > 0
+    told = CliRunner().invoke(commands.app, ["info", str(OLD)])
+    assert told.exit_code == 0
+    assert "bladegen 1.0.0" in told.output
+    with pytest.raises(FamilyError, match=r"made by bladegen 1\.0\.0, whose blades lie elsewhere"):
+        family[0]
+    shutil.copytree(OLD, tmp_path / "old")
+    for words in (
+        ["label", str(tmp_path / "old"), "mass"],
+        ["family", "nrel5mw", "-o", str(tmp_path / "old"), "--count", "3", "--resume"],
+        ["family", "nrel5mw", "-o", str(tmp_path / "old"), "--count", "5", "--append"],
+    ):
+        refused = CliRunner().invoke(commands.app, words)
+        assert isinstance(refused.exception, FamilyError)
+        assert "made by bladegen 1.0.0" in str(refused.exception)
+
+
+def test_families_without_a_dataset_are_read(folder, tmp_path):
     old = tmp_path / "old"
     shutil.copytree(folder, old)
     (old / "CARD.md").unlink()
@@ -156,9 +179,7 @@ def test_families_of_version_1_are_read(folder, tmp_path):
     assert_array_equal(was.split("test"), new.split("test"))
 
 
-def test_a_whole_family_of_version_1_becomes_a_dataset_when_it_is_resumed(
-    folder, planned, tmp_path
-):
+def test_a_whole_family_without_a_dataset_gets_one_when_it_is_resumed(folder, planned, tmp_path):
     old = tmp_path / "old"
     shutil.copytree(folder, old)
     store = zarr.open_group(old / "sections.zarr", mode="r+", use_consolidated=False)

@@ -19,7 +19,7 @@ from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array
 from bladegen.version import __version__
 
-__all__ = ["fingerprint", "identity", "require_same"]
+__all__ = ["fingerprint", "identity", "require_current", "require_same"]
 
 FEW = 64  # variants of a plan of any length that tell whether libraries draw as they did
 
@@ -83,6 +83,22 @@ def _blade(blade: Blade) -> str:
     )
 
 
+def require_current(path: Path, found: dict[str, Any]) -> None:
+    """Raise if a family was made by version 1, whose blades are others.
+
+    Raises
+    ------
+    FamilyError
+        That says what can still be done with it.
+    """
+    if found and "chord_line" not in found:  # all families of version 2 say where theirs lies
+        raise FamilyError(
+            f"{path}: was made by bladegen {found.get('bladegen', '1')}, whose blades lie "
+            "elsewhere between stations; its arrays can be read (bladegen info, bg.load_family), "
+            "its blades are not made anew; take another folder for a family of this version"
+        )
+
+
 def require_same(path: Path, wanted: dict[str, Any], found: dict[str, Any]) -> None:
     """Raise if a folder holds another family than the one that is asked for.
 
@@ -91,6 +107,7 @@ def require_same(path: Path, wanted: dict[str, Any], found: dict[str, Any]) -> N
     FamilyError
         That says in what they differ, and how labels are added.
     """
+    require_current(path, found)
     different = [key for key in wanted | found if wanted.get(key) != found.get(key)]
     if different == ["labels"]:
         asked, there = (one.get("labels", {}) for one in (wanted, found))

@@ -26,6 +26,7 @@ from bladegen.families.dataset import store
 from bladegen.families.dataset.loading import LoadedFamily
 from bladegen.families.dataset.writing import write_card
 from bladegen.families.folder import FamilyFolder
+from bladegen.families.identity import require_current
 from bladegen.families.labels.figures import FIGURES, LABELS
 from bladegen.families.labels.labelling import Labelling, checked
 from bladegen.families.processes import in_threads
@@ -69,6 +70,7 @@ def add_labels(
     """
     if whole(jobs, "jobs", FamilyError) < 1:
         raise FamilyError(f"jobs: got {jobs}, must be at least 1")
+    require_current(family.path, family.identity)
     if not store.is_complete(family.store):
         raise FamilyError(
             f"{family.path}: its store is not a whole dataset; the command that made it, with "

@@ -23,6 +23,7 @@ from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
 from bladegen.families.dataset.store import column_values, opened
 from bladegen.families.dataset.variables import parameter, variables
 from bladegen.families.family import Family
+from bladegen.families.identity import require_current
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import one_of, shown, suggestion, whole
 from bladegen.support.arrays import Array, Indices, readonly
@@ -239,6 +240,7 @@ class LoadedFamily:
     @cached_property
     def planned(self) -> Family:
         """The family as a plan, its variants where the manifest says that they lie."""
+        require_current(self.path, self.identity)
         return planned_again(
             self.path,
             {**self.attributes, **self.identity},

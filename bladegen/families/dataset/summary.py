@@ -43,7 +43,7 @@ def figures(family: LoadedFamily) -> dict[str, Any]:
         "files_of_variants": ", ".join(identity["formats"]) or "none",
         "splits": {name: len(family.split(name, sound=False)) for name in SPLITS},
         "megabytes": stored / 1e6,
-        "made_by": about["source"],
+        "made_by": f"bladegen {identity['bladegen']}",
         "command": about.get("command", ""),
         "ranges": ranges,
     }

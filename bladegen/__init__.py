@@ -62,7 +62,7 @@ _HOME = {
     "ParametricBlade": "parametric.model",
     "PlanformFairing": "definition.fair_planform",
     "ReferenceAxis": "definition.blade_definition",
-    "Rotor": "definition.blade_definition",
+    "Rotor": "definition.rotor",
     "ShapeSpace": "shapes.shape_space",
     "Station": "definition.blade_definition",
     "Structure": "definition.structure.structure",

@@ -153,7 +153,7 @@ def test_the_model_weighs_what_the_layers_weigh(blade, model):
     assert_allclose(model.mass, blade.layup.mass, rtol=0.02)
     assert_allclose(finer.mass, blade.layup.mass, rtol=0.005)
     for i, layer in enumerate(model.structure.layers):
-        density = model.structure.densities[layer.material]
+        density = model.structure.by_name[layer.material].density
         mass = density * finer.thickness[i] @ finer.areas
         assert_allclose(mass, blade.layup.layer_masses[layer.name], rtol=0.05, atol=5.0)
 

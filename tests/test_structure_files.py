@@ -209,6 +209,6 @@ def test_an_airfoil_of_unknown_thickness_is_measured_for_windio_2(tmp_path):
 
 def test_what_bonds_layers_is_kept_of_the_materials(plain):
     structure = plain.structure
-    assert {"resin", "adhesive"} <= structure.densities.keys()
+    assert {"resin", "adhesive"} <= structure.by_name.keys()
     layup = bg.Blade.from_definition(plain, landmarks=201).layup
     assert set(layup.material_masses) == {layer.material for layer in structure.layers}

@@ -51,8 +51,7 @@ def extended(
     alpha, cl, cd, cm : (k,) arrays
         From -pi to pi; the given points are among them, and both ends are alike.
     """
-    most = 1.11 + 0.018 * min(aspect_ratio, 50.0)
-    least = float(cd.min())
+    most, least = _plate_drag(aspect_ratio), float(cd.min())
     after = _angles(float(alpha[-1]))
     before = _angles(float(-alpha[0]))
     stalled = _stalled(after, alpha[-1], (cl[-1], cd[-1], cm[-1]), most, least)
@@ -80,7 +79,7 @@ def around(
     at = np.arange(len(alpha))
     between = (at >= low) & (at <= high)
     least = np.where(between, cd, np.inf).min(axis=1, keepdims=True)
-    most = 1.11 + 0.018 * min(aspect_ratio, 50.0)
+    most = _plate_drag(aspect_ratio)
     lift, drag = np.empty((2, len(cl), len(grid)))
     for sign, stall in ((1.0, high), (-1.0, low)):
         beyond = sign * grid >= 0.0
@@ -107,6 +106,11 @@ def normal_moment(alpha: Array, cl: Array, cd: Array) -> Array:
     arm = 0.5 * np.abs(alpha) / np.pi
     moment: Array = -(cl * np.cos(alpha) + cd * np.sin(alpha)) * arm
     return moment
+
+
+def _plate_drag(aspect_ratio: float) -> float:
+    """Return the drag coefficient at 90 degrees."""
+    return 1.11 + 0.018 * min(aspect_ratio, 50.0)
 
 
 def _angles(stall: float) -> Array:

@@ -6,7 +6,7 @@ axis, x to the suction side, y to the trailing edge, z to the tip).  Span is `et
 the reference axis is given on the same grid.  Layout and names follow windIO.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -21,12 +21,13 @@ from bladegen.definition.distribution import (
     united,
 )
 from bladegen.definition.reference_axis import ReferenceAxis
+from bladegen.definition.rotor import Rotor
 from bladegen.definition.structure.structure import Structure
 from bladegen.errors import DefinitionError, Finding, visible
-from bladegen.support.arguments import amount, instance, numbers, shown
+from bladegen.support.arguments import instance, numbers, shown
 from bladegen.support.arrays import Array, ArrayLike, readonly
 from bladegen.support.services import shown_by
-from bladegen.support.values import brief, equal, hashed
+from bladegen.support.values import equal, hashed
 
 __all__ = [
     "SMALLEST_RISE",
@@ -140,29 +141,6 @@ class Station:
 
 
 @dataclass(frozen=True, repr=False)
-class Rotor:
-    """What a file says of the rotor around the blade; nothing here shapes the blade.
-
-    `facts` are kept for other tools, by their path in windIO 2 and in its units.
-    """
-
-    blades: int = 3
-    hub_radius: float | None = None
-    diameter: float | None = None
-    cone: float | None = None
-    tilt: float | None = None
-    hub_drag: float | None = None
-    facts: tuple[tuple[str, str | float], ...] = ()
-
-    def __post_init__(self) -> None:
-        for name, value in vars(self).items():
-            if value is not None and name != "facts":
-                amount(value, f"rotor: {name}", DefinitionError)
-
-    __repr__ = brief
-
-
-@dataclass(frozen=True, repr=False)
 class BladeDefinition:
     """A blade as its designer defines it: airfoils at stations, distributions over span.
 
@@ -205,7 +183,7 @@ class BladeDefinition:
     pitch_axis: Distribution | None = None
     section_offset_x: Distribution | None = None
     relative_thickness: Distribution | None = None
-    rotor: Rotor = Rotor()
+    rotor: Rotor = field(default_factory=Rotor)
     structure: Structure | None = None
     description: str = ""
     source: str = ""

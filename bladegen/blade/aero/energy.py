@@ -6,7 +6,7 @@ wakes and stops are counted.
 """
 
 from dataclasses import asdict, dataclass, fields
-from math import gamma, pi
+from math import gamma
 
 import numpy as np
 
@@ -83,19 +83,13 @@ class Conditions:
         The tip speed is that of the rated rotor speed, else of the largest, else `TIP_SPEED`;
         the mean wind that of the turbine's class (IEC 61400-1).
         """
-        known = dict(rotor.facts)
-
-        def fact(*names: str) -> float | None:
-            found = (known[name] for name in names if isinstance(known.get(name), int | float))
-            return next((float(value) for value in found), None)
-
-        turns = fact("control.rated_rotor_speed", "control.max_rotor_speed")
+        turbine_class = dict(rotor.facts).get("assembly.turbine_class", "")
         wanted: dict[str, float | None] = {
-            "tip_speed": None if turns is None else turns * 2.0 * pi / 60.0 * tip_radius,
-            "rated_power": fact("assembly.rated_power", "control.rated_power"),
-            "mean_wind": CLASSES.get(str(known.get("assembly.turbine_class", ""))),
-            "cut_in": fact("assembly.cut_in_wind_speed"),
-            "cut_out": fact("assembly.cut_out_wind_speed"),
+            "tip_speed": None if rotor.speed is None else rotor.speed * tip_radius,
+            "rated_power": rotor.fact("assembly.rated_power", "control.rated_power"),
+            "mean_wind": CLASSES.get(str(turbine_class)),
+            "cut_in": rotor.fact("assembly.cut_in_wind_speed"),
+            "cut_out": rotor.fact("assembly.cut_out_wind_speed"),
         }
         wanted |= {name: value for name, value in given.items() if value is not None}
         return cls(**{name: value for name, value in wanted.items() if value is not None})

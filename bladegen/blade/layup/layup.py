@@ -96,7 +96,7 @@ class Layup:
         thickness = np.nan_to_num(stacked([within(layer.thickness, eta) for layer in layers]))
         thickness = np.where(there, thickness, 0.0)
         width = np.where(there, width, 0.0)
-        density = np.array([self.structure.densities[layer.material] for layer in layers])
+        density = np.array([self.structure.by_name[layer.material].density for layer in layers])
         with np.errstate(invalid="ignore", divide="ignore"):
             centre = np.where(width[..., None] > 0.0, moment / width[..., None], np.nan)
         angle = [np.zeros(len(eta)) if one.angle is None else one.angle(eta) for one in layers]
@@ -140,7 +140,7 @@ class Layup:
     def material_masses(self) -> dict[str, float]:
         """Mass [kg] of each material that is in a layer, by its name."""
         used = {layer.material for layer in self.structure.layers}
-        found = {name: 0.0 for name in self.structure.densities if name in used}
+        found = {name: 0.0 for name in self.structure.by_name if name in used}
         for layer, mass in zip(self.structure.layers, self._weighed[0].tolist(), strict=True):
             found[layer.material] += mass
         return found

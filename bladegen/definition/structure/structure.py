@@ -137,7 +137,7 @@ class Structure:
                     raise DefinitionError(
                         f"structure: {kind}: {name} stands {count} times, allowed is once"
                     )
-        materials = {material.name for material in self.materials}
+        materials = self.by_name
         webs = {web.name for web in self.webs}
         for layer in self.layers:
             if layer.material not in materials:
@@ -158,6 +158,6 @@ class Structure:
         )
 
     @property
-    def densities(self) -> dict[str, float]:
-        """Densities [kg/m3] of the materials by name."""
-        return {material.name: material.density for material in self.materials}
+    def by_name(self) -> dict[str, Material]:
+        """The materials by name."""
+        return {material.name: material for material in self.materials}

@@ -7,7 +7,7 @@ the blade stands at zero pitch.  Speeds in m/s, angles in radians.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan2, degrees, hypot, pi, radians
+from math import atan2, degrees, hypot, radians
 
 from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import BladeDefinition
@@ -143,15 +143,12 @@ class _Rotor:
 
     @classmethod
     def of(cls, definition: BladeDefinition) -> "_Rotor":
-        facts = dict(definition.rotor.facts)
         hub = definition.rotor.hub_radius or 0.0
-        turns = _positive(facts.get("control.rated_rotor_speed"))  # 1/min, as windIO has it
-        best = _positive(facts.get("control.optimal_tsr"))
-        radius = hub + definition.length
-        tip = TIP_SPEED if turns is None else turns * pi / 30.0 * radius
+        speed, best = definition.rotor.speed, definition.rotor.design_ratio
+        tip = TIP_SPEED if speed is None else speed * (hub + definition.length)
         ratio = TIP_SPEED_RATIO if best is None else best
         said = (
-            f"a tip speed of {tip:.1f} m/s ({'assumed' if turns is None else 'rated'}) and a tip "
+            f"a tip speed of {tip:.1f} m/s ({'assumed' if speed is None else 'rated'}) and a tip "
             f"speed ratio of {ratio:.2f} ({'assumed' if best is None else 'the best of the file'})"
         )
         return cls(tip, tip / ratio, said, hub, definition.length)
@@ -159,8 +156,3 @@ class _Rotor:
     def ratio(self, eta: float) -> float:
         """Return the radius at a span fraction over the tip's."""
         return (self.hub + eta * self.length) / (self.hub + self.length)
-
-
-def _positive(value: object) -> float | None:
-    """Return a fact if it is a positive number."""
-    return float(value) if isinstance(value, int | float) and value > 0 else None

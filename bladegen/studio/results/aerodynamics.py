@@ -21,7 +21,6 @@ from bladegen.support.arrays import Array
 __all__ = ["USUAL", "Lift", "Rotor", "Working"]
 
 USUAL = 6.0  # deg, of attack, where no rotor says it
-DESIGN_RATIO = "control.optimal_tsr"  # as windIO files name it
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,8 +116,7 @@ class Working:
         speed = conditions_of(elements, rotor).tip_speed
         tables = _tables(elements, speed)
         best = performance(elements, tables, rotor.blades)
-        named = dict(rotor.facts).get(DESIGN_RATIO)
-        ratio = float(named) if isinstance(named, int | float) else float(best.ratio[0])
+        ratio = rotor.design_ratio or float(best.ratio[0])
         point = np.full((1, 1), ratio), best.pitch[:, None]
         alpha = np.degrees(angles_of_attack(elements, tables, rotor.blades, *point))[0, 0, 1:-1]
         return cls(ratio, float(best.pitch[0]), hub, cone, speed, rotor.blades, SPANS[1:-1], alpha)

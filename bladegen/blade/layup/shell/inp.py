@@ -90,7 +90,7 @@ def _orientation(name: str, model: ShellModel, section: Section, angle: float) -
 
 
 def _evenly(model: ShellModel, sections: list[Section]) -> Iterator[str]:
-    materials = {one.name: one for one in model.structure.materials}
+    materials = model.structure.by_name
     nodal = nodal_thickness(model)
     quads, areas, total = model.mesh.quads, model.areas, model.thickness.sum(axis=0)
     yield "*NODAL THICKNESS"
@@ -121,7 +121,7 @@ def _evenly(model: ShellModel, sections: list[Section]) -> Iterator[str]:
 
 
 def _laminated(model: ShellModel, sections: list[Section]) -> Iterator[str]:
-    materials = {one.name: one for one in model.structure.materials}
+    materials = model.structure.by_name
     for name in dict.fromkeys(layer.material for layer in model.structure.layers):
         yield from _own(materials[name])
     for section in sections:

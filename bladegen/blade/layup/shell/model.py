@@ -88,7 +88,7 @@ class ShellModel:
     @property
     def mass(self) -> float:
         """Mass [kg] of all elements."""
-        density = np.array([self.structure.densities[one.material] for one in self._layers])
+        density = np.array([self.structure.by_name[one.material].density for one in self._layers])
         return float((density @ self.thickness) @ self.areas)
 
     @property

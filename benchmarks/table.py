@@ -29,11 +29,12 @@ from pathlib import Path
 from typing import Any
 
 from figures import SPREAD, TABLE
+from headlines import summary
 
 HERE = Path(__file__).resolve().parent
 MEASURED = HERE.parent / "docs" / "measured.md"
 LIBRARIES = ("bladegen", "numpy", "scipy", "numba", "cadquery-ocp", "trimesh", "pyvista", "zarr")
-SKIPPED = {"figures", "table", "wisdem_run"}  # the last needs another environment
+SKIPPED = {"figures", "headlines", "table", "wisdem_run"}  # the last needs another environment
 HEAD = f"""# Measured
 
 What `benchmarks/` print, each in one run of its own; `make bench` runs all. Contenders take turns
@@ -42,6 +43,7 @@ Where a cell holds four figures they are the {SPREAD} of as many runs, variants 
 stations as the head says. Machines differ and are shared: compare within a row. The rules that all
 benchmarks keep are at the head of `benchmarks/figures.py`.
 """
+TOP = "## The twenty that most ask for"
 LARGE = 1e7  # whole numbers below it are shown digit by digit
 Row = dict[str, Any]
 BLOCK = re.compile(r"<!-- measured:([^|>]*)\|([^|>]*)\|([^|>]*)-->\n.*?<!-- end -->", re.DOTALL)
@@ -167,7 +169,7 @@ def refreshed(text: str, made: Mapping[str, Sequence[Row]]) -> str:
 
 
 def parts(text: str) -> dict[str, str]:
-    """Return what an earlier document holds of each benchmark."""
+    """Return what a document holds of each benchmark."""
     pieces = re.split(r"\n## `benchmarks/(\w+)\.py`\n", text)
     return dict(zip(pieces[1::2], pieces[2::2], strict=True))
 
@@ -193,7 +195,7 @@ def main() -> None:
         rows = "\n".join(tables(found[script.stem]))
         made[script.stem] = rows and f"\nMeasured on {date.today()}.\n\n{rows}"
         print(f"== {script.name} took {time.perf_counter() - start:.0f} s", flush=True)
-    text = HEAD + f"\n{machine()}\n"
+    text = HEAD + f"\n{machine()}\n\n{TOP}\n\n{summary(made)}"
     for name in sorted(name for name in made if made[name].strip()):
         text += f"\n## `benchmarks/{name}.py`\n{made[name]}"
     asked.target.write_text(text, encoding="utf-8")

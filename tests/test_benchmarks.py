@@ -18,7 +18,7 @@ def shared(monkeypatch):
     import table
 
     yield figures, table
-    for name in ("figures", "table"):
+    for name in ("figures", "headlines", "table"):
         sys.modules.pop(name, None)
 
 
@@ -112,8 +112,18 @@ def test_pages_name_benchmarks_and_figures_that_there_are(shared):
 def test_every_benchmark_says_how_it_is_run_and_can_be_tried_at_a_small_size(path, shared):
     _, table = shared
     text = path.read_text()
-    if path.stem in ("figures", "wisdem_run"):
+    if path.stem in ("figures", "headlines", "wisdem_run"):
         return
     assert f"benchmarks/{path.name}" in text
     assert "quick" in text
     assert path.stem in table.SKIPPED or "figure(" in text
+
+
+def test_the_document_begins_with_figures_that_stand_in_its_tables(shared):
+    _, table = shared
+    document = table.MEASURED.read_text(encoding="utf-8")
+    top = table.summary(table.parts(document))
+    assert f"{table.TOP}\n\n{top}\n## `benchmarks/" in document
+    assert top.count("\n") == 22
+    with pytest.raises(ValueError, match="solids: no figure"):
+        table.summary({"solids": "| on | made [s] |\n| --- | --- |\n| iea15mw | 1 |\n"})

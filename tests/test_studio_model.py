@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 from bladegen.errors import PerturbationError
 from bladegen.studio.checks.concavity import hollows
+from bladegen.studio.choices.difference import left
 from bladegen.studio.controls import MODES
 from bladegen.studio.model import Baseline
 from bladegen.studio.page.drawing.modes import mode
@@ -112,6 +113,38 @@ def test_odd_sections_are_shown_and_can_be_had(baseline):
     assert "has a " in found["Airfoils"].figure
     assert scene.valid
     assert baseline.variant(state).findings[len(baseline.blade.findings) :]
+
+
+@pytest.mark.parametrize(
+    ("part", "change"),
+    [
+        ("rigid", {"twist": 3.0, "prebend": 1.6}),
+        ("affine", {"twist": 3.0, "prebend": 1.6, "thickness": 1.1, "chord": 1.1, "camber": 1.04}),
+    ],
+)
+def test_a_part_of_the_difference_that_is_not_asked_for_is_not_coloured(part, change):
+    baseline = Baseline("dtu10mw", bg.Blade.from_definition(bg.read("dtu10mw")), SPACE)
+    state = State("dtu10mw", off=part, **change)
+    some = abs(baseline.scene(state).deviation)
+    whole = abs(baseline.scene(replace(state, off="all")).deviation)
+    far = whole.max(axis=1) > 0.01
+    assert np.median(some[far].max(axis=1) / whole[far].max(axis=1)) < 0.01  # edges stay as wide
+    shaped = replace(state, t=(0.05, 0.0, 0.0, 0.0))
+    assert abs(baseline.scene(shaped).deviation).max() > 0.05
+
+
+def test_motions_and_affine_maps_are_taken_out_exactly():
+    rng = np.random.default_rng(2)
+    flat = rng.normal(size=(3, 50, 2))
+    frames = np.linalg.qr(rng.normal(size=(2, 3, 3, 3)))[0]
+    frames *= np.sign(np.linalg.det(frames))[..., None, None]
+    rest = flat @ frames[0][:, :2] + rng.normal(size=(3, 1, 3))
+    moved = (rest - 1.0) @ frames[1] + 2.0
+    assert_allclose(left(moved, rest, "rigid"), 0.0, atol=1e-12)
+    mapped = (flat @ rng.normal(size=(3, 2, 2))) @ frames[1][:, :2]
+    assert_allclose(left(mapped, rest, "affine"), 0.0, atol=1e-11)
+    assert abs(left(mapped, rest, "rigid")).max() > 0.1
+    assert_allclose(left(moved, rest, "all"), moved - rest, atol=0)
 
 
 def test_what_comes_near_its_limit_is_said_before_it_is_odd(baseline):

@@ -464,6 +464,18 @@ def test_views_and_overlays_change_the_picture_alone(opened):
     assert len(set(seen)) == len(seen)
     assert state(tab) == {"blade": "nrel5mw", "thickness": "1.2"}
     before = tab.locator(".section .now").get_attribute("d")
+    scale = tab.locator(".legend .ends").inner_text()
+    click(tab, "Without affine maps")
+    holds(tab, off="affine")
+    tab.wait_for_function(
+        "before => document.querySelector('.legend .ends').innerText !== before", arg=scale
+    )
+    click(tab, "Export a file")
+    click(tab, "mm")
+    holds(tab, unit="mm")
+    tab.get_by_label("Export .stl: STL, binary triangles, mm").wait_for()
+    tab.keyboard.press("Escape")
+    tab.locator(".exports").wait_for(state="detached")
     click(tab, "As it stands in the blade, in metres")
     tab.wait_for_function(
         "before => document.querySelector('.section .now').getAttribute('d') !== before", arg=before

@@ -9,9 +9,11 @@ from typer.testing import CliRunner
 import bladegen as bg
 from bladegen.cli import commands
 from bladegen.cli.options.fairing import planform_fairing
+from bladegen.exports.options import Options
 from bladegen.measures import checks
+from bladegen.studio.choices.delivery import Delivery
+from bladegen.studio.choices.loft import Loft
 from bladegen.studio.library import Entry, Library
-from bladegen.studio.loft import Loft
 from bladegen.studio.model import Baseline
 from bladegen.studio.recipes import python, shell
 from bladegen.studio.state import State
@@ -47,6 +49,16 @@ def test_how_the_blade_is_made_is_in_the_script_and_the_command():
     assert words[words.index("--path") + 1] == "geodesic"
     asked = words[words.index("--fair-planform") + 1]
     assert planform_fairing(asked, "fair-planform") == bg.PlanformFairing()
+
+
+def test_how_files_are_is_in_the_script_and_the_command():
+    state = replace(STATES[0], files=Delivery("mm", 0.25))
+    words = shlex.split(shell(state, ENTRY, "x"))
+    assert words[words.index("--unit") + 1] == "mm"
+    assert words[words.index("--tolerance") + 1] == "0.25mm"
+    assert "unit='mm', tolerance=0.25e-3)" in python(state, ENTRY, "x")
+    assert state.files.options.tolerance == pytest.approx(2.5e-4)
+    assert STATES[0].files.options == Options()
 
 
 @pytest.mark.parametrize("loft", [Loft(), GEODESIC.loft])

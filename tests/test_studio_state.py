@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from bladegen.blade.lofting.paths import PATHS
 from bladegen.errors import StudioError
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.studio.choices.delivery import Delivery
+from bladegen.studio.choices.loft import Loft
 from bladegen.studio.controls import AFFINE, AT, controls
-from bladegen.studio.loft import Loft
 from bladegen.studio.state import History, State, from_query, to_query
 from strategies import few
 
@@ -56,6 +57,10 @@ def test_the_shortest_link_names_the_blade_alone():
         ("window=0.5,0.2", "got 0.5 to 0.2, must rise"),
         ("path=straight", "path: got 'straight', allowed are spline, geodesic"),
         ("fair=no", "link: fair: got 'no', allowed is yes"),
+        ("off=some", "off: got 'some', allowed are all, rigid, affine"),
+        ("unit=ft", "unit: got 'ft', allowed are m, mm"),
+        ("tolerance=none", "tolerance: got nan, allowed is 0.001 to 50 mm"),
+        ("tolerance=99", "tolerance: got 99, allowed is 0.001 to 50 mm"),
         ("start=0.5", "'start' is unknown"),
         ("<script>=1", "is unknown, allowed are blade, t, window"),
         ("at=" + "1" * 3000, "allowed are 2000"),
@@ -143,3 +148,17 @@ def test_one_drag_is_one_step_and_the_section_is_none():
     assert (back.present.thickness, back.present.at) == (1.03, 0.3)
     assert back.moved(start.having(thickness, 0.9)).undone == ()
     assert history.moved(history.present) is history
+
+
+def test_what_is_seen_and_how_files_are_is_no_step_and_stays():
+    seen = replace(State("nrel5mw"), off="affine", files=Delivery("mm", 0.5))
+    assert to_query(seen) == "blade=nrel5mw&off=affine&unit=mm&tolerance=0.5"
+    assert from_query(to_query(seen), KNOWN, "iea15mw") == seen
+    thick = replace(seen, thickness=1.1)
+    history = History(State("nrel5mw", thickness=1.1)).moved(thick)
+    assert not history.before
+    assert history.present == thick
+    history = history.moved(thick.reset())
+    assert (history.present.off, history.present.files) == (thick.off, thick.files)
+    other = replace(history.present, off="rigid")
+    assert history.moved(other).undo().present == replace(thick, off="rigid")

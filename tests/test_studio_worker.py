@@ -4,6 +4,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from zipfile import ZipFile
 
 import pytest
@@ -14,9 +15,10 @@ from bladegen.errors import StudioError
 from bladegen.exports.options import Kind
 from bladegen.exports.registry import FORMATS, Format
 from bladegen.measures import checks
+from bladegen.studio.choices.delivery import Delivery
 from bladegen.studio.process import Worker
 from bladegen.studio.state import State
-from bladegen.studio.worker import Job, formats, load, make
+from bladegen.studio.worker import Job, formats, grouped, load, make
 
 LONG = 600.0  # s; far more than is needed, for machines that are busy
 STUDIO = """
@@ -39,13 +41,23 @@ def test_each_format_is_offered_once_and_solids_first():
     assert sorted(offered) == sorted(set(FORMATS) - again)
 
 
+def test_formats_stand_in_groups_of_what_they_are_for():
+    found = grouped()
+    assert list(found)[:3] == ["CAD", "Meshes", "CFD grids"]
+    assert {suffix for rows in found.values() for suffix in rows} == set(formats())
+    assert ".cgns" in found["CFD grids"]
+    assert ".htc" in found["Aeroelastic and structural tools"]
+
+
 def test_a_job_makes_its_file_and_says_what_it_does(tmp_path):
-    job = Job("nrel5mw", MOVED, ".stl", str(tmp_path))
+    job = Job("nrel5mw", replace(MOVED, files=Delivery("mm")), ".stl", str(tmp_path))
     made = make(job)
     assert made.path == str(tmp_path / "nrel5mw-variant.stl")
     assert not made.remark
     assert job.told.read_text() == "meshing"
-    assert not checks.check_file(tmp_path / "nrel5mw-variant.stl").problems
+    found = checks.check_file(tmp_path / "nrel5mw-variant.stl")
+    assert not found.problems
+    assert found.figures["volume"] > 1e10  # mm3
 
 
 def test_a_format_of_several_files_comes_as_one_archive(tmp_path, monkeypatch):

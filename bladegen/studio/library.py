@@ -27,7 +27,7 @@ from bladegen.formats.qblade import reading as qblade
 from bladegen.formats.reading import SUFFIXES, holds_blade, read
 from bladegen.formats.registry import FORMATS
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.studio.loft import PLAIN, Loft
+from bladegen.studio.choices.loft import PLAIN, Loft
 from bladegen.studio.model import Baseline
 from bladegen.support.files import safe_stem
 

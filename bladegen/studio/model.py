@@ -17,6 +17,7 @@ from bladegen.blade.variants.batch import Batch, SectionBatch
 from bladegen.blade.variants.verdicts import THINNEST
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.checks.verdicts import Measured, checks
+from bladegen.studio.choices.difference import left
 from bladegen.studio.controls import AFFINE
 from bladegen.studio.scene import Check, Curves, Scene, flattened
 from bladegen.studio.state import State
@@ -105,6 +106,9 @@ class Baseline:
         sections = batch.sections[0]
         rest, normals = self._rest
         deviation = np.sum((sections - rest) * normals, axis=-1)
+        shown = deviation
+        if state.off != "all":
+            shown = np.sum(left(sections, rest, state.off) * normals, axis=-1)
         curves = Curves(
             self.eta,
             batch.chord[0],
@@ -116,7 +120,7 @@ class Baseline:
             state,
             self.eta,
             sections,
-            deviation,
+            shown,
             curves,
             self._checks(state, batch, deviation),
         )
@@ -133,6 +137,23 @@ class Baseline:
             if not (faults.any() or odd or thickness.min() < THINNEST):
                 break
         return state
+
+    def within(self, state: State) -> Window:
+        """Return where a state's changes act."""
+        return Window(*state.window) if state.window else self.window
+
+    def room(self, state: State) -> tuple[Array, Array]:
+        """Return how far coordinates (r,) may go without a section that leaves the data."""
+        sections = self._sections(state)
+        assert sections.domain is not None  # a baseline has a space
+        domain, weight = sections.domain, sections.weight
+        judged = (weight > 0.0) & np.isfinite(domain.high[:, 0])
+        if not weight[np.argmin(np.abs(self.eta - state.at))] > 0.0 or not judged.any():
+            return np.zeros(self.space.dimension), np.zeros(self.space.dimension)
+        share = weight[judged, None]
+        low = ((domain.low - domain.own)[judged] / share).max(axis=0)
+        high = ((domain.high - domain.own)[judged] / share).min(axis=0)
+        return low, high
 
     def peek(self, state: State, mode: int) -> tuple[Array, float]:
         """Return the section looked at, moved along a mode by minus, nothing and plus a step.

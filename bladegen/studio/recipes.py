@@ -3,6 +3,7 @@
 import shlex
 
 from bladegen.blade.lofting.paths import DEFAULT
+from bladegen.studio.choices.delivery import USUAL
 from bladegen.studio.controls import AFFINE
 from bladegen.studio.library import Entry
 from bladegen.studio.state import State
@@ -19,6 +20,10 @@ def shell(state: State, entry: Entry, stem: str) -> str:
         words += ["--path", state.loft.path]
     if state.loft.fairing is not None:
         words += ["--fair-planform", str(state.loft.fairing)]
+    if state.files.unit != USUAL.unit:
+        words += ["--unit", state.files.unit]
+    if state.files.tolerance != USUAL.tolerance:
+        words += ["--tolerance", f"{state.files.tolerance:g}mm"]
     if any(state.t):
         # a value that starts with a minus would be taken for an option
         words.append("--pga=" + ",".join(f"{value:g}" for value in state.t))
@@ -61,5 +66,10 @@ def python(state: State, entry: Entry, stem: str) -> str:
             asked.append("window=bg.Window({!r}, {!r})".format(*state.window))
         asked.append(f"name={stem!r}")
         lines += ["blade = blade.perturbed(", *(f"    {word}," for word in asked), ")"]
-    lines.append(f"bg.export(blade, {stem + '.step'!r})")
+    files = ""
+    if state.files.unit != USUAL.unit:
+        files += f", unit={state.files.unit!r}"
+    if state.files.tolerance != USUAL.tolerance:
+        files += f", tolerance={state.files.tolerance:g}e-3"
+    lines.append(f"bg.export(blade, {stem + '.step'!r}{files})")
     return "\n".join(lines) + "\n"

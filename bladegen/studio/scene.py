@@ -46,7 +46,8 @@ class Scene:
     sections : (k, n, 3) array
         The surface [m].
     deviation : (k, n) array
-        How far it lies off the baseline, along the baseline's outward normal [m].
+        How far it lies off the baseline, along the baseline's outward normal [m]: the part of it
+        that the state asks for.
     curves : Curves
         Over span.
     checks : tuple of Check

@@ -5,7 +5,7 @@ its control's step within its control's bounds, so that a link, a command and a 
 same.  Twist is in degrees here, as people write it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 from urllib.parse import parse_qs, urlencode
@@ -14,8 +14,10 @@ import numpy as np
 
 from bladegen.errors import StudioError
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.studio.choices.delivery import USUAL, Delivery
+from bladegen.studio.choices.difference import known_part
+from bladegen.studio.choices.loft import PLAIN, Loft
 from bladegen.studio.controls import AFFINE, CONTROLS, END, START, Control, controls
-from bladegen.studio.loft import PLAIN, Loft
 
 __all__ = ["History", "State", "from_query", "to_query"]
 
@@ -42,6 +44,10 @@ class State:
         Span fraction of the section that is shown.
     loft : Loft
         How the blade is made, before any change of it.
+    off : str
+        Which part of the difference from the baseline is coloured, of `difference.PARTS`.
+    files : Delivery
+        How files are written.
     """
 
     blade: str
@@ -54,6 +60,8 @@ class State:
     prebend: float = 1.0
     at: float = 0.5
     loft: Loft = PLAIN
+    off: str = "all"
+    files: Delivery = USUAL
 
     @property
     def changed(self) -> bool:
@@ -85,7 +93,11 @@ class State:
 
     def baseline(self, blade: str) -> "State":
         """Return a blade without changes: the same section shown, made as here."""
-        return State(blade, (0.0,) * len(self.t), at=self.at, loft=self.loft)
+        return self.seen_as(State(blade, (0.0,) * len(self.t), loft=self.loft))
+
+    def seen_as(self, other: "State") -> "State":
+        """Return another state, looked at and written as this one: no step of a history."""
+        return replace(other, at=self.at, off=self.off, files=self.files)
 
     def reset(self) -> "State":
         """Return the baseline, with the same section shown."""
@@ -124,11 +136,41 @@ def to_query(state: State) -> str:
         words["path"] = state.loft.path
     if state.loft.fair:
         words["fair"] = FAIR
+    if state.off != plain.off:
+        words["off"] = state.off
+    if state.files.unit != plain.files.unit:
+        words["unit"] = state.files.unit
+    if state.files.tolerance != plain.files.tolerance:
+        words["tolerance"] = f"{state.files.tolerance:g}"
     for entry in fields(State):
         value = getattr(state, entry.name)
         if isinstance(value, float) and value != getattr(plain, entry.name):
             words[entry.name] = f"{value:g}"
     return urlencode(words, safe=",")
+
+
+def _fair(state: State, text: str) -> State:
+    if text != FAIR:
+        raise StudioError(f"link: fair: got {text[:40]!r}, allowed is {FAIR}")
+    return replace(state, loft=replace(state.loft, fair=True))
+
+
+def _tolerance(state: State, text: str) -> State:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")  # which no range allows
+    return replace(state, files=replace(state.files, tolerance=value))
+
+
+CHOICES: dict[str, Callable[[State, str], State]] = {
+    "path": lambda state, text: replace(state, loft=replace(state.loft, path=text)),
+    "fair": _fair,
+    "off": lambda state, text: replace(state, off=known_part(text)),
+    "unit": lambda state, text: replace(state, files=replace(state.files, unit=text)),
+    "tolerance": _tolerance,
+}
+KEYS = ("blade", "t", "window", *(control.name for control in AFFINE), "at", *CHOICES)  # of links
 
 
 def from_query(query: str, known: Mapping[str, Control], default: str) -> State:
@@ -164,16 +206,12 @@ def from_query(query: str, known: Mapping[str, Control], default: str) -> State:
             if len(numbers) != 2:
                 raise StudioError(f"link: window: got {text[:40]!r}, must be two span fractions")
             state = state.within(*numbers)
-        elif key == "path":
-            state = replace(state, loft=replace(state.loft, path=text))
-        elif key == "fair":
-            if text != FAIR:
-                raise StudioError(f"link: fair: got {text[:40]!r}, allowed is {FAIR}")
-            state = replace(state, loft=replace(state.loft, fair=True))
+        elif key in CHOICES:
+            state = CHOICES[key](state, text)
         elif key in CONTROLS and key not in ("start", "end"):
             state = state.having(known[key], text)
         else:
-            allowed = ", ".join(entry.name for entry in fields(State))
+            allowed = ", ".join(KEYS)
             raise StudioError(f"link: {key[:40]!r} is unknown, allowed are {allowed}")
     return state
 
@@ -194,7 +232,7 @@ class History:
         """Return the history with a new present, reached by moving `control`."""
         if state == self.present:
             return self
-        if replace(state, at=self.present.at) == self.present:
+        if self.present.seen_as(state) == self.present:
             return replace(self, present=state)
         if control and control == self.moving:
             return replace(self, present=state, undone=())
@@ -210,15 +248,11 @@ class History:
         if not self.before:
             return self
         *before, present = self.before
-        return History(
-            replace(present, at=self.present.at), tuple(before), (*self.undone, self.present)
-        )
+        return History(self.present.seen_as(present), tuple(before), (*self.undone, self.present))
 
     def redo(self) -> "History":
         """Return the history one step forth; itself at the end."""
         if not self.undone:
             return self
         *undone, present = self.undone
-        return History(
-            replace(present, at=self.present.at), (*self.before, self.present), tuple(undone)
-        )
+        return History(self.present.seen_as(present), (*self.before, self.present), tuple(undone))

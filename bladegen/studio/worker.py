@@ -11,15 +11,26 @@ from zipfile import ZIP_DEFLATED, ZipFile
 from bladegen.errors import BladegenError, StudioError, ToleranceError
 from bladegen.exports import registry
 from bladegen.exports.exporters import aside, write
-from bladegen.exports.options import Options
+from bladegen.exports.options import Kind
 from bladegen.exports.products import Products
 from bladegen.studio.results.question import opened
 from bladegen.studio.state import State
 
-__all__ = ["FIRST", "Job", "Made", "formats", "load", "make"]
+__all__ = ["FIRST", "Job", "Made", "formats", "grouped", "load", "make"]
 
 FIRST = (".step", ".stl", ".glb", ".yaml")
 ALIAS = "the same as"
+GROUPS = {
+    Kind.solid: "CAD",
+    Kind.curves: "CAD",
+    Kind.structure: "CAD",
+    Kind.triangles: "Meshes",
+    Kind.grid: "CFD grids",
+    Kind.definition: "Aeroelastic and structural tools",
+    Kind.shell: "Aeroelastic and structural tools",
+    Kind.table: "Data",
+    Kind.picture: "Pictures",
+}
 
 
 @dataclass(frozen=True)
@@ -68,6 +79,15 @@ def formats() -> dict[str, str]:
     return {suffix: known[suffix] for suffix in order}
 
 
+def grouped() -> dict[str, dict[str, str]]:
+    """Return what can be written by what it is for, then by suffix."""
+    known = registry.formats()
+    found: dict[str, dict[str, str]] = {title: {} for title in GROUPS.values()}
+    for suffix, words in formats().items():
+        found[GROUPS[known[suffix].kind]][suffix] = words
+    return {title: rows for title, rows in found.items() if rows}
+
+
 def make(job: Job) -> Made:
     """Write a job's file.
 
@@ -92,7 +112,7 @@ def _made(job: Job) -> Made:
     path = Path(job.folder) / f"{baseline.stem(job.state)}{job.suffix}"
     told(f"making {job.suffix.lstrip('.').upper()}")
     try:
-        write(Products(variant, Options(), told), path)
+        write(Products(variant, job.state.files.options, told), path)
     except ToleranceError as error:
         return Made(str(aside(path)), str(error).replace(str(path), path.name))
     return Made(str(_together(path, job)))

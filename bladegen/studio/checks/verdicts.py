@@ -141,7 +141,7 @@ def _concavity(found: Measured) -> Check:
     if figure < LEAST:
         return Check("good", "Concavity", "none more than before")
     status = "near" if figure > HOLLOW[side] else "good"
-    word = f"+{figure:.1f} deg, {SIDES[side]} side {found.at(worst)}"
+    word = f"+{figure:.1f}\u00b0 {SIDES[side]} side {found.at(worst)}"
     return Check(status, "Concavity", word)
 
 

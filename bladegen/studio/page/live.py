@@ -6,6 +6,7 @@ longer shown is thrown away.
 
 import asyncio
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from bladegen.studio.results.answers import (
@@ -49,6 +50,10 @@ class Live:
         """Ask about a state once no other comes; called on the server's event loop."""
         from nicegui import background_tasks
 
+        plain = State(state.blade)
+        state = replace(state, off=plain.off, files=plain.files)  # which change no answer
+        if state == self._wanted and not self.stale:
+            return
         self._wanted = state
         self._told(stale=True)
         if not self._working:

@@ -10,6 +10,7 @@ from bladegen.studio.page.bar import bar, key
 from bladegen.studio.page.buttons import toggle
 from bladegen.studio.page.elements import stage
 from bladegen.studio.page.figures import figures
+from bladegen.studio.page.legend import legend
 from bladegen.studio.page.numbers import number_of, own_number, shape_number
 from bladegen.studio.page.section import section
 from bladegen.studio.page.tab import Page, Shown
@@ -48,7 +49,7 @@ def build(page: Page) -> None:
         with ui.element("section").classes("card panel").props('aria-label="Parameters"'):
             _sliders(page)
             checks = _checks()
-        legend = _view(page)
+        view = _view(page)
         profile = section(page)
         with ui.element("section").classes("card planform").props('aria-label="Planform"'):
             ui.html("Over span", tag="h2", sanitize=False)
@@ -59,7 +60,7 @@ def build(page: Page) -> None:
         profile(shown)
         planform.set_content(shown.planform)
         checks(shown)
-        legend(shown)
+        view(shown)
 
     page.charts = charts
     page.follow()
@@ -165,18 +166,11 @@ def _view(page: Page) -> Callable[[Shown], None]:
             toggle("palette", "Colour what lies off the baseline", True, page.stage, "paint")
             toggle("grid_on", "Outline of the baseline", False, page.stage, "overlay")
         figures(page)
-        with ui.element("div").classes("legend") as legend:
-            ui.label("off the baseline, along its normal")
-            ui.element("i")
-            with ui.element("div").classes("ends"):
-                into, out = ui.label(), ui.label()
+        key = legend(page)
 
     def show(shown: Shown) -> None:
         scene = shown.scene
-        most = float(abs(scene.deviation).max())
-        legend.set_visibility(most >= 5e-4)
-        into.set_text(f"\u2212{1e3 * most:.0f} mm")
-        out.set_text(f"+{1e3 * most:.0f} mm")
+        key(shown)
         entry = page.studio.library.entry(scene.state.blade)
         title.set_content(escape(entry.label + (", variant" if scene.state.changed else "")))
         tip = scene.sections[-1].mean(axis=0)

@@ -15,8 +15,8 @@ import numpy as np
 
 from bladegen.errors import BladegenError, StudioError
 from bladegen.studio import recipes
+from bladegen.studio.choices.loft import Loft
 from bladegen.studio.controls import Control, controls
-from bladegen.studio.loft import Loft
 from bladegen.studio.page import charts
 from bladegen.studio.page.live import Live
 from bladegen.studio.scene import Scene
@@ -132,6 +132,10 @@ class Page:
             self.follow()
         else:
             self.move(self.history.moved(state))
+
+    def choose(self, **choices: Any) -> None:
+        """Choose what colours mean, or how files are written; not a step of the history."""
+        self._try(lambda: replace(self.state, **choices), "")
 
     async def draw(self) -> None:
         """Show a random sound variant."""

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 from bladegen.formats.reading import read
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.studio.loft import Loft
+from bladegen.studio.choices.loft import Loft
 from bladegen.studio.model import Baseline
 from bladegen.studio.state import State
 

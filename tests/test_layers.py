@@ -10,8 +10,8 @@ import pytest
 import bladegen
 
 PACKAGE = Path(bladegen.__file__).parent
-ROOMS = """errors version support curves airfoils shapes definition blade formats surface cad
-measures parametric fitting views exports families studio cli""".split()  # noqa: SIM905
+ROOMS = """errors version support curves airfoils shapes definition blade neuralfoil formats
+surface cad measures parametric fitting views exports families studio cli""".split()  # noqa: SIM905
 LIGHT = {*sys.stdlib_module_names, "bladegen", "numpy", "rich", "typer", "yaml"}
 TREES = {p: ast.parse(p.read_text(encoding="utf-8")) for p in sorted(PACKAGE.rglob("*.py"))}
 NAMES = {".".join(p.relative_to(PACKAGE.parent).with_suffix("").parts): p for p in TREES}

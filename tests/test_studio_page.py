@@ -250,6 +250,18 @@ def test_figures_and_charts_follow_a_slider_that_rests(opened, answering):
     looked_at(opened("?blade=nrel5mw&at=0.6"))
 
 
+def test_an_optimum_is_one_step_to_undo(opened, answering):
+    tab = opened("?blade=nrel5mw&at=0.7")
+    click(tab, "Optimise lift over drag of the section")
+    click(tab, "Start")
+    tab.get_by_text(re.compile(r"lift over drag [\d.]+ → [\d.]+ in \d+ evaluations")).wait_for()
+    assert "t" in state(tab)
+    click(tab, "Close")
+    tab.locator(".optimising").wait_for(state="detached")
+    click(tab, "Undo")
+    holds(tab, t=None)
+
+
 @pytest.mark.nightly
 def test_figures_come_from_a_process_of_their_own(opened, monkeypatch):
     monkeypatch.undo()
@@ -471,7 +483,7 @@ def test_views_and_overlays_change_the_picture_alone(opened):
         "before => document.querySelector('.legend .ends').innerText !== before", arg=scale
     )
     click(tab, "Export a file")
-    click(tab, "mm")
+    tab.get_by_role("button", name="mm", exact=True).click()
     holds(tab, unit="mm")
     tab.get_by_label("Export .stl: STL, binary triangles, mm").wait_for()
     tab.keyboard.press("Escape")

@@ -157,7 +157,7 @@ def _airfoils(found: Measured) -> Check:
     worst, which = np.unravel_index(np.argmax(share), share.shape)
     if share[worst, which] > NEAR:
         name = list(GROWING.values())[which]
-        return Check("near", "Airfoils", f"{name} near its limit {found.at(worst)}")
+        return Check("near", "Airfoils", f"{name} near limit {found.at(worst)}")
     return Check("good", "Airfoils", "no odd section")
 
 

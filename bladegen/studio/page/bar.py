@@ -5,6 +5,7 @@ from typing import Any
 from bladegen.studio.library import UPLOAD_BYTES, UPLOAD_FILES, UPLOADS
 from bladegen.studio.page.buttons import button
 from bladegen.studio.page.dialogs.exports import exports
+from bladegen.studio.page.dialogs.optimising import optimising
 from bladegen.studio.page.dialogs.sharing import keys_help, share
 from bladegen.studio.page.tab import Page
 
@@ -49,6 +50,8 @@ def bar(page: Page) -> None:
         redo = button("redo", "Redo", page.redo, "Ctrl Shift Z")
         reset = button("restart_alt", "Reset to the baseline", page.reset, "0")
         button("casino", "A random sound variant", page.draw, "R", "Random")
+        words = "Optimise lift over drag of the section"
+        button("auto_graph", words, lambda: optimising(page), label="Optimise")
         words = "A link, a command and a script that make this blade"
         button("link", words, lambda: share(page), label="Share")
         menu = ui.button("Export", icon="download", on_click=lambda: exports(page), color=None)

@@ -2,6 +2,7 @@ import ctypes
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from PIL import Image
 
 import bladegen as bg
@@ -9,7 +10,9 @@ from bladegen.errors import ExportError, RenderError
 from bladegen.exports import marks
 from bladegen.exports.provenance import made_from
 from bladegen.views import preview
+from bladegen.views.rendering.offsets import offsets
 from bladegen.views.rendering.picture import _round_step
+from bladegen.views.rendering.scene import Field
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +47,30 @@ def test_a_gallery_shows_each_blade_in_a_cell_of_its_own_as_the_camera_sees_it(b
     assert not inked[120:, 400:].any()
     across = np.flatnonzero(one.any(axis=0))
     assert across[-1] - across[0] > 300  # filled, from root to tip
+
+
+def test_a_gallery_colours_blades_by_how_far_they_lie_from_another(blade):
+    eta = np.linspace(0.0, 1.0, 40)
+    reference = blade.sections(eta)
+    shown = np.stack([reference, blade.perturbed(thickness=1.1).sections(eta)])
+    apart = offsets(shown, reference)
+    assert np.abs(apart[0]).max() == 0.0
+    assert apart[1].max() > 0.05
+    made = preview.gallery(
+        shown, columns=2, size=(800, 120), field=Field.within("apart", "m", apart, 0.1)
+    )
+    plain, coloured = np.ptp(made.astype(float), axis=2).reshape(120, 2, 400).max(axis=(0, 2))
+    assert plain < 8  # white to grey where nothing moved
+    assert coloured > 60
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_offsets_of_a_wider_tube_are_what_its_radius_grew_by(mirrored):
+    turn = np.pi * np.linspace(0.0, 2.0, 201) * (1.0 if mirrored else -1.0)
+    circle = np.stack([np.sin(turn), np.cos(turn)], axis=-1)
+    tube = np.stack([np.column_stack([circle, np.full(201, z)]) for z in (0.0, 1.0, 2.0)])
+    wider = tube * [1.25, 1.25, 1.0] + [0.0, 0.0, 0.3]  # what moves along the skin does not count
+    assert_allclose(offsets(wider[None], tube)[0, 1, 1:-1], 0.25, rtol=1e-3)
 
 
 def test_a_blade_plots_itself_to_a_file_or_a_window(blade, tmp_path, monkeypatch):

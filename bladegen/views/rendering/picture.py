@@ -1,5 +1,6 @@
 """Pictures of blades as PNG: one with three views to scale, many side by side, and one view."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,7 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.files import require_suffix
-from bladegen.surface.mesh import TriangleMesh, surface
+from bladegen.surface.mesh import TriangleMesh, topology
 from bladegen.surface.regions import REGIONS
 from bladegen.surface.vtk_files import save
 from bladegen.views.plots.style import INK
@@ -86,11 +87,24 @@ def save_image(image: Indices, path: Path) -> None:
     Image.fromarray(image).save(path, format="PNG", optimize=True)
 
 
-def gallery(sections: Array, *, columns: int, size: tuple[int, int]) -> Indices:
+def gallery(
+    sections: Array, *, columns: int, size: tuple[int, int], field: Field | None = None
+) -> Indices:
     """Render blades given by their sections (b, k, n, 3) side by side, all seen alike.
 
     They are one mesh in one view: each blade is brought to perspective first, then seen in
     parallel, moved to its own cell, row by row from the upper left.
+
+    Parameters
+    ----------
+    sections : (b, k, n, 3) array
+        Of blades [m].
+    columns : int
+        Blades side by side.
+    size : (int, int)
+        Pixels.
+    field : Field, optional
+        What colours them: its values are (b, k, n).
 
     Returns
     -------
@@ -110,8 +124,13 @@ def gallery(sections: Array, *, columns: int, size: tuple[int, int]) -> Indices:
     seen = perspective(sections[:, :, ::10].reshape(-1, 3), OBLIQUE, aspect)
     with quietly():
         shown = []
-        for place, loops in enumerate(sections[:, :, :: thinning(sections.shape[2], SMALL)]):
-            one = shaded(surface(loops))
+        thin = thinning(sections.shape[2], SMALL)
+        for place, loops in enumerate(sections[:, :, ::thin]):
+            points, used, faces, regions = topology(loops)
+            own: tuple[Field, ...] = ()
+            if field is not None:
+                own = (replace(field, values=field.values[place, :, ::thin].reshape(-1)[used]),)
+            one = shaded(TriangleMesh(points[used], faces, None, regions), own)
             row, column = divmod(place, columns)
             cell = np.array([2.0 * column * aspect, -2.0 * row, 0.0])
             points, normals = seen(np.asarray(one.points), np.asarray(one.point_normals))
@@ -119,7 +138,7 @@ def gallery(sections: Array, *, columns: int, size: tuple[int, int]) -> Indices:
             shown.append(one)
         plotter = pv.Plotter(off_screen=True, window_size=list(size), border=False)
         dress(plotter)
-        add_surface(plotter, pv.PolyData().append_polydata(*shown))
+        add_surface(plotter, pv.PolyData().append_polydata(*shown), field)
         middle = np.array([(columns - 1) * aspect, 1.0 - rows, 0.0])
         eye = middle + np.array([0.0, 0.0, FAR])
         plotter.camera_position = [eye, middle, [0.0, 1.0, 0.0]]

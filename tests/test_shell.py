@@ -15,6 +15,7 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import bladegen as bg
+from bladegen.blade.edges import MinimumThickness
 from bladegen.blade.layup.shell.inp import FORCE, GRAVITY, inp_lines, nodal_thickness
 from bladegen.blade.layup.shell.laminates import even, plane_stiffness
 from bladegen.blade.layup.shell.model import shell_model
@@ -146,6 +147,23 @@ def test_the_skin_looks_outward_and_no_element_folds(blade, model, mirrored):
     assert_allclose(volume, blade.volume, rtol=0.06)  # less what closing trailing edges takes
     assert_allclose(made.mass, model.mass, rtol=1e-9)
     assert (np.abs(np.einsum("mi,mi->m", *made.axes)) < 1e-9).all()
+
+
+def test_a_trailing_edge_that_is_closed_is_said_with_its_place(blade, model):
+    def place(of):
+        (said,) = (one.message for one in of.findings if one.where == "shell: trailing edges")
+        width, share, eta = map(float, re.findall(r"to (\d+) mm, (\d+) % .* = ([\d.]+)", said)[0])
+        ends = of.blade.sections([eta])[0, [0, -1]]
+        found = np.linalg.norm(ends[0] - ends[1])
+        assert_allclose(found, 1e-3 * width, rtol=0, atol=1e-3)
+        assert_allclose(found / of.blade.chord(eta), 0.01 * share, rtol=0, atol=0.005)
+        return said
+
+    assert "flatbacks" not in place(model)
+    thick = bg.Blade.from_definition(
+        blade.definition, landmarks=101, trailing_edge=MinimumThickness(0.5, 0.08)
+    )
+    assert "no panel for such flatbacks" in place(shell_model(thick.layup, 4.0))
 
 
 def test_the_model_weighs_what_the_layers_weigh(blade, model):

@@ -45,8 +45,8 @@ class Mesh:
         Fractions of the arc, or of the web's height, between which an element lies.
     root, tip : (r,) array
         Nodes of the skin at the ends.
-    gap : float
-        The widest trailing edge that was closed [m].
+    gap, widest : float
+        The widest trailing edge that was closed [m], and its span fraction.
     lines : Lines
         Between which the columns lie.
     """
@@ -61,6 +61,7 @@ class Mesh:
     root: Indices
     tip: Indices
     gap: float
+    widest: float
     lines: Lines
 
 
@@ -72,7 +73,7 @@ def mesh_of(blade: Blade, structure: Structure, size: float) -> Mesh:
     outlines = Outlines.of(blade, fine)
     lines = mesh_lines(structure, outlines)
     fractions, starts = _columns(lines.fractions, outlines.length, size)
-    grid, gap = _closed(outlines, fractions)
+    grid, gaps = _closed(outlines, fractions)
     rows, around = len(fine), grid.shape[1]
     ids = np.arange(rows * around).reshape(rows, around)
     ring = np.concatenate([ids, ids[:, :1]], axis=1)
@@ -115,7 +116,8 @@ def mesh_of(blade: Blade, structure: Structure, size: float) -> Mesh:
         sides=np.concatenate([sides.reshape(-1, 2) for _, _, sides in sheets]),
         root=number[ids[0]][number[ids[0]] >= 0],
         tip=number[ids[-1]][number[ids[-1]] >= 0],
-        gap=gap,
+        gap=float(gaps.max()),
+        widest=float(fine[np.argmax(gaps)]),
         lines=lines,
     )
 
@@ -148,14 +150,13 @@ def _columns(lines: Array, length: Array, size: float) -> tuple[Array, Indices]:
     return np.concatenate(parts, axis=1), 2 * np.concatenate([[0], np.cumsum(counts)])
 
 
-def _closed(outlines: Outlines, fractions: Array) -> tuple[Array, float]:
-    """Return the points (rows, around, 3) of the skin with its trailing edge closed."""
+def _closed(outlines: Outlines, fractions: Array) -> tuple[Array, Array]:
+    """Return points (rows, around, 3) of the skin, closed behind, and how wide it was (rows,)."""
     points = outlines.at(fractions.T).swapaxes(0, 1)
     half = 0.5 * (outlines.points[:, -1] - outlines.points[:, 0])
     weight = np.clip(1.0 - fractions / BENT, 0.0, 1.0)
     weight = weight - np.clip(1.0 - (1.0 - fractions) / BENT, 0.0, 1.0)
-    gap = 2.0 * float(np.linalg.norm(half, axis=-1).max())
-    return points + half[:, None] * weight[..., None], gap
+    return points + half[:, None] * weight[..., None], 2.0 * np.linalg.norm(half, axis=-1)
 
 
 def _quads(sheet: Indices) -> Indices:

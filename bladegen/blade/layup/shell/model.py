@@ -28,6 +28,7 @@ MIRRORED = [0, 3, 2, 1, 7, 6, 5, 4]  # nodes of an element that looks the other 
 THIN = 1e-6  # m
 WHOLE = 0.999  # of an element, covered by a layer
 NONE = 1e-3
+FLATBACK = 0.05  # of the chord: a trailing edge that carries load
 MOVED = 1e-3  # of the arc
 TURNED = np.cos(np.radians(20.0))  # of normals in one section
 
@@ -171,8 +172,11 @@ class ShellModel:
         """What of the model is not as the blade is."""
         said, mesh = [], self.mesh
         if mesh.gap > THIN:
+            share = mesh.gap / float(self.blade.chord(mesh.widest))
             closed = f"are closed to their middle, up to {1e3 * mesh.gap:.0f} mm"
-            said.append(Finding("shell: trailing edges", closed))
+            where = f", {100.0 * share:.0f} % of the chord at eta = {mesh.widest:.3f}"
+            flat = "; the model has no panel for such flatbacks" if share > FLATBACK else ""
+            said.append(Finding("shell: trailing edges", closed + where + flat))
         for name, by in mesh.lines.moved.items():
             if by > MOVED:
                 where = f"stands up to {by:.3f} of the arc beside its place, to keep off others"

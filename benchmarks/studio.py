@@ -100,6 +100,7 @@ def shots(browser, address, blade, folder):
         ("studio", (1280, 720), "light"),
         ("studio-dark", (1280, 720), "dark"),
         ("studio-tablet", (820, 1180), "light"),
+        ("studio-phone", (390, 844), "light"),
     ):
         context = browser.new_context(
             viewport={"width": size[0], "height": size[1]}, color_scheme=theme
@@ -108,6 +109,7 @@ def shots(browser, address, blade, folder):
         tab.goto(address + query)
         tab.wait_for_selector(DRAWN, timeout=120_000)
         tab.evaluate("() => document.fonts.ready")
+        tab.wait_for_selector(".figures:not(.stale) table", timeout=120_000)
         tab.wait_for_selector(".stage[data-fine=true]")
         tab.screenshot(path=folder / f"{name}.png")
         context.close()

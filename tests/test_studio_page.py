@@ -520,6 +520,16 @@ def test_all_is_in_view_and_all_has_a_name(opened, width, height):
     assert nameless == []
 
 
+def test_on_a_phone_the_blade_stays_in_sight_of_the_sliders(opened):
+    tab = opened(width=390, height=844)
+    assert tab.evaluate("() => document.documentElement.scrollWidth") == 390
+    for name in ("Shape 1 [rad]", "Fade to", "Section at"):
+        slider(tab, name).evaluate("one => one.scrollIntoView({ block: 'end' })")
+        view, one = tab.locator(".view").bounding_box(), slider(tab, name).bounding_box()
+        assert view["y"] >= 0
+        assert view["y"] + view["height"] <= one["y"] <= 844
+
+
 def test_an_export_that_fails_is_said_and_the_page_goes_on(opened, monkeypatch):
     def submit(worker, make, job):
         failed = Future()

@@ -44,12 +44,13 @@ def build(page: Page) -> None:
     from nicegui import ui
 
     ui.dark_mode(None)
-    with ui.element("main").classes("studio"):
+    with ui.element("div").classes("studio"):
         bar(page)
         with ui.element("section").classes("card panel").props('aria-label="Parameters"'):
             _sliders(page)
             checks = _checks()
         view = _view(page)
+        figures(page)
         profile = section(page)
         with ui.element("section").classes("card planform").props('aria-label="Planform"'):
             ui.html("Over span", tag="h2", sanitize=False)
@@ -165,7 +166,6 @@ def _view(page: Page) -> Callable[[Shown], None]:
                 button.on_click(lambda view=view: page.stage.run_method("look", view))
             toggle("palette", "Colour what lies off the baseline", True, page.stage, "paint")
             toggle("grid_on", "Outline of the baseline", False, page.stage, "overlay")
-        figures(page)
         key = legend(page)
 
     def show(shown: Shown) -> None:

@@ -20,6 +20,7 @@ def exports(page: Page) -> None:
     from nicegui import ui
 
     with page.client, ui.dialog() as dialog, ui.card().classes("exports w-full"):
+        dialog.props('aria-label="Export"')
         ui.html("Export", tag="h2", sanitize=False)
         with ui.element("div").classes("how"):
             units = _units()

@@ -6,7 +6,7 @@ from typing import Any
 
 from bladegen.errors import StudioError
 from bladegen.studio.page.tab import Page
-from bladegen.studio.results.aerodynamics import USUAL
+from bladegen.studio.results.aerodynamics import USUAL, Lift
 from bladegen.studio.results.optimum import LIMITS, Optimum, Wish, optimise
 from bladegen.studio.results.question import Question
 
@@ -26,8 +26,7 @@ def optimising(page: Page) -> None:
     """Let a run be wished for, watched and cancelled; what it finds is one step to undo."""
     from nicegui import ui
 
-    answer = page.live.section
-    lift = answer.lift.now if answer is not None and answer.state.at == page.state.at else None
+    lift = _known(page)
     wished = {
         "angle": round(lift.at if lift else USUAL, 1),
         "band": Wish.band,
@@ -35,9 +34,10 @@ def optimising(page: Page) -> None:
         "area": Wish.area,
     }
     run: dict[str, Any] = {"wish": None}
-    place = f"{100 * page.state.at:.0f} %"
     with page.client, ui.dialog() as dialog, ui.card().classes("optimising"):
-        ui.html(f"Optimise the section at {place}", tag="h2", sanitize=False)
+        dialog.props('aria-label="Optimise"')
+        title = f"Optimise the section at {100 * page.state.at:.0f} %"
+        ui.html(title, tag="h2", sanitize=False)
         ui.html(
             "The most lift over drag, by NeuralFoil, over the four shape coordinates; all else "
             "stays as it is, and no section of the blade shall be odd.",
@@ -94,6 +94,12 @@ def optimising(page: Page) -> None:
     stop.on_click(close)
     dialog.on("hide", gone)
     dialog.open()
+
+
+def _known(page: Page) -> Lift | None:
+    """Return lift and drag of the section looked at, if they are known."""
+    answer = page.live.section
+    return answer.lift.now if answer is not None and answer.state.at == page.state.at else None
 
 
 def _field(name: str, value: float) -> Any:

@@ -24,6 +24,7 @@ def share(page: Page) -> None:
 
     link, shell, python = page.recipe()
     with page.client, ui.dialog() as dialog, ui.card().classes("share w-full"):
+        dialog.props('aria-label="Share"')
         for title, words in (
             ("Link", link),
             ("In a shell", shell),
@@ -53,6 +54,7 @@ def keys_help() -> None:
         for keys, words in KEYS
     )
     with ui.dialog() as dialog, ui.card():
+        dialog.props('aria-label="Keys"')
         ui.html(f'<table class="keys">{rows}</table>', sanitize=False)
         ui.button("Close", on_click=dialog.close, color=None).props("flat no-caps").classes(
             "self-end"

@@ -255,7 +255,7 @@ def test_an_optimum_is_one_step_to_undo(opened, answering):
     click(tab, "Optimise lift over drag of the section")
     click(tab, "Start")
     tab.get_by_text(re.compile(r"lift over drag [\d.]+ → [\d.]+ in \d+ evaluations")).wait_for()
-    assert "t" in state(tab)
+    tab.wait_for_function("() => new URLSearchParams(location.search).has('t')")
     click(tab, "Close")
     tab.locator(".optimising").wait_for(state="detached")
     click(tab, "Undo")

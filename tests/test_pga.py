@@ -135,6 +135,65 @@ def test_damaged_and_foreign_files_are_refused(tmp_path):
         ShapeSpace.load(tmp_path / "nowhere.npz")
 
 
+def as_g2aero_keeps_it(space, affine, more=3):
+    """What G2Aero's Grassmann_PGAspace.save_to_file writes: pressure side first, all modes."""
+    rng = np.random.default_rng(4)
+    n = len(space.mean)
+    others = rng.normal(size=(more, n, 2))
+    others -= space.mean @ (space.mean.T @ others)
+    basis = np.concatenate([space.modes, others]).reshape(-1, 2 * n).T
+    basis = np.linalg.qr(basis)[0] * np.sign(np.diag(np.linalg.qr(basis)[1]))
+    small = 1e-5 * rng.normal(size=(len(space.coordinates), more)) * 0.5 ** np.arange(more)
+    return {
+        "Vh": basis.T.reshape(-1, n, 2)[:, ::-1].reshape(-1, 2 * n),
+        "karcher_mean": space.mean[::-1],
+        "M_mean": affine,
+        "b_mean": np.array([0.5, 0.0]),
+        "coords": np.concatenate([space.coordinates, small], axis=1),
+    }
+
+
+def test_spaces_of_g2aero_are_read(tmp_path):
+    space = ShapeSpace.bundled()
+    points = landmarks(bg.read("iea15mw").stations[-1].airfoil.coordinates, 401)
+    mean, affine = np.linalg.qr(points - points.mean(axis=0))
+    modes = space.modes - mean @ (mean.T @ space.modes)
+    modes = np.linalg.qr(modes.reshape(4, -1).T)[0].T.reshape(4, 401, 2)
+    space = ShapeSpace(space.u, mean, modes, space.variances, space.coordinates)
+    path = tmp_path / "PGA_space.npz"
+    np.savez(path, **as_g2aero_keeps_it(space, affine))
+    found = ShapeSpace.load(path)
+    assert found.about == "G2Aero, PGA_space.npz: the first 4 of 7 modes"
+    t = space.coordinates[::4000]
+    assert_allclose(grassmann.distance(found.decode(t), space.decode(t)), 0.0, atol=1e-7)
+    assert_allclose(found.u, space.u, atol=1e-4)  # where ours lie on that shape
+    assert_allclose(found.variances[:4], space.variances[:4], rtol=0.05)
+    found.save(tmp_path / "ours.npz")
+    again = ShapeSpace.load(tmp_path / "ours.npz").at(space.u)
+    assert_allclose(grassmann.distance(again.decode(t), space.decode(t)), 0.0, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"M_mean": None}, "is a space of G2Aero's without M_mean"),
+        ({"shape_mean": np.zeros((9, 2))}, r"G2Aero's space of affine parts .SPD."),
+        ({"karcher_mean": np.eye(2)}, r"G2Aero's space of affine parts"),
+        ({"Vh": np.zeros((3, 9))}, r"must be .r, 2 n., .n, 2. and .m, r., n odd"),
+        ({"karcher_mean": np.array([{"a": 1}], dtype=object)}, "is no shape space"),
+        ({"coords": np.full((4, 2), np.nan)}, "finite numbers"),
+    ],
+)
+def test_broken_spaces_of_g2aero_are_refused_in_a_line(tmp_path, change, said):
+    space = ShapeSpace.fit(cloud(1), modes=2)
+    arrays = as_g2aero_keeps_it(space, np.eye(2), more=1) | change
+    path = tmp_path / "space.npz"
+    np.savez(path, **{name: value for name, value in arrays.items() if value is not None})
+    with pytest.raises(SpaceError, match=said) as told:
+        ShapeSpace.load(path)
+    assert "\n" not in str(told.value)
+
+
 def test_files_that_are_too_large_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr("bladegen.support.archive.MAX_BYTES", 10)
     (tmp_path / "big.npz").write_bytes(b"x" * 11)

@@ -17,8 +17,8 @@ from bladegen.shapes import grassmann
 from bladegen.shapes.distributions import distribution_of, sound_at
 from bladegen.shapes.learning import checked, chunks, parameters, principal
 from bladegen.shapes.other_landmarks import evaluated
-from bladegen.shapes.saved_spaces import ORTHONORMAL, problem_of
-from bladegen.support.archive import load_arrays, save_arrays
+from bladegen.shapes.saved_spaces import ORTHONORMAL, problem_of, read_space
+from bladegen.support.archive import save_arrays
 from bladegen.support.arguments import instance, numbers, one_of, path_of, whole
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.files import require_suffix
@@ -132,7 +132,7 @@ class ShapeSpace:
 
     @classmethod
     def load(cls, path: str | Path) -> "ShapeSpace":
-        """Read a space from an npz file, or a bundled one by its name ("sound").
+        """Read a space from an npz file (ours, G2Aero's), or a bundled one by name ("sound").
 
         Raises
         ------
@@ -148,7 +148,7 @@ class ShapeSpace:
                 f"{path}: is no file; bundled spaces are {', '.join(FILES)}; the paper's is "
                 "ShapeSpace.bundled(), in the shell that without --space"
             )
-        arrays, about = load_arrays(place, ARRAYS)
+        arrays, about = read_space(place, ARRAYS)
         problem = problem_of(arrays)
         if problem is not None:
             raise SpaceError(f"{path}: is no shape space: {problem}")

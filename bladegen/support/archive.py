@@ -19,7 +19,7 @@ from bladegen.errors import FileError, SpaceError
 from bladegen.support.arrays import Array
 from bladegen.support.files import content_of, replacing
 
-__all__ = ["checksum", "load_arrays", "rewritten", "save_arrays"]
+__all__ = ["checksum", "load_arrays", "members", "rewritten", "save_arrays"]
 
 VERSION = 2  # 1: each side was divided by arc length for itself
 MAX_BYTES = 200 * 2**20  # of the file, and of what it unpacks to
@@ -56,15 +56,10 @@ def load_arrays(path: Path, names: Sequence[str]) -> tuple[dict[str, Array], str
     SpaceError
         If the file cannot be read, is of another version, or is damaged.
     """
-    try:
-        with zipfile.ZipFile(io.BytesIO(content_of(path, MAX_BYTES))) as archive:
-            if sum(member.file_size for member in archive.infolist()) > MAX_BYTES:
-                raise SpaceError(f"{path}: unpacks to more than {MAX_BYTES >> 20} MB")
-            held = {name: _member(archive, name) for name in (*LABELS, *names)}
-    except FileError as error:
-        raise SpaceError(str(error)) from None
-    except DAMAGED as error:
-        raise SpaceError(f"{path}: is no shape space: {error}") from None
+    held = members(path, (*LABELS, *names))
+    for name in (*LABELS, *names):
+        if name not in held:
+            raise SpaceError(f"{path}: is no shape space: it holds no array {name!r}")
     if held["version"].shape != () or held["version"] != VERSION:
         raise SpaceError(
             f"{path}: has version {held['version']}, allowed is {VERSION}, as landmarks are spaced "
@@ -75,6 +70,26 @@ def load_arrays(path: Path, names: Sequence[str]) -> tuple[dict[str, Array], str
     if str(held["checksum"]) != checksum(arrays, about):
         raise SpaceError(f"{path}: is damaged: its checksum does not match its arrays")
     return arrays, about
+
+
+def members(path: Path, names: Sequence[str]) -> dict[str, Any]:
+    """Return those of the named arrays that an npz file holds.
+
+    Raises
+    ------
+    SpaceError
+        If the file cannot be read, is damaged or too large, or holds Python objects.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content_of(path, MAX_BYTES))) as archive:
+            if sum(member.file_size for member in archive.infolist()) > MAX_BYTES:
+                raise SpaceError(f"{path}: unpacks to more than {MAX_BYTES >> 20} MB")
+            there = {name.removesuffix(".npy") for name in archive.namelist()}
+            return {name: _member(archive, name) for name in names if name in there}
+    except FileError as error:
+        raise SpaceError(str(error)) from None
+    except DAMAGED as error:
+        raise SpaceError(f"{path}: is no shape space: {error}") from None
 
 
 def _member(archive: zipfile.ZipFile, name: str) -> Any:

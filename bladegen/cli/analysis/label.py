@@ -31,6 +31,12 @@ def label(
         str | None,
         typer.Option(metavar="FILE", help="The baseline, where it is no bundled blade."),
     ] = None,
+    space: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="The space of its modes, where its landmarks are not the blade's."
+        ),
+    ] = None,
     making: Making = MAKING,
     mirror: Mirror = False,
     jobs: Annotated[int, typer.Option(help="Threads at work.")] = 1,
@@ -43,12 +49,15 @@ def label(
     from bladegen.families.additions.later_labels import add_labels
     from bladegen.families.dataset.loading import load_family
     from bladegen.families.labels.figures import FIGURES
+    from bladegen.shapes.shape_space import ShapeSpace
 
     words = [word.strip().lower() for text in labels for word in text.split(",")]
-    loaded = load_family(family)
+    loaded, baseline = load_family(family), None
     if blade is not None:
         made = making.blade(blade, loaded.identity["landmarks"])
-        loaded = load_family(family, blade=made.mirror_image() if mirror else made)
+        baseline = made.mirror_image() if mirror else made
+    modes = None if space is None else ShapeSpace.load(space)
+    loaded = load_family(family, blade=baseline, space=modes)
     try:
         with variants_bar(len(loaded)) as progress:
             computed = add_labels(loaded, words, jobs=jobs, progress=progress)

@@ -256,6 +256,12 @@ X = [anchored("one", "x.start_nd_arc", "TE.end_nd_arc")]
         ),
         (
             1,
+            {"layers": [layer("one", midpoint_nd_arc={"fixed": "TE"}, width=over(1, 1))]},
+            "midpoint_nd_arc.fixed",
+            "'TE' is not known here, must be LE; a layer around the trailing edge is two here",
+        ),
+        (
+            1,
             {"layers": [layer("one", start_nd_arc={"fixed": "one"}, end_nd_arc=over(1, 1))]},
             "start_nd_arc.fixed",
             "rests on itself",

@@ -1,6 +1,7 @@
 """Structure in CAD: the skin cut where layers end, webs between its sides, one STEP assembly."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from bladegen.cad import exchange, shapes, solids
 from bladegen.cad.structure.assembly import inside, write_structure
 from bladegen.cad.structure.zones import bays_of
 from bladegen.cli import commands
+from bladegen.definition.structure.positions import Arc
 from bladegen.errors import ExportError
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
@@ -22,7 +24,8 @@ LAYERS = ["Spar_Cap_SS", "LE_reinforcement", "TE_reinforcement_PS", "TE_SS_fille
 
 
 def blade_of(name):
-    return bg.Blade.from_definition(bg.read(name), landmarks=101)
+    definition = bg.read(name) if isinstance(name, str) else name
+    return bg.Blade.from_definition(definition, landmarks=101)
 
 
 @pytest.fixture(
@@ -61,6 +64,30 @@ def test_faces_have_the_areas_of_layers_and_webs(made):
     for name, area in wanted.items():
         assert_allclose(parts.areas[name], area, rtol=0.01, err_msg=name)
     assert not parts.findings
+
+
+def test_lines_that_part_all_at_once_stay_in_order():
+    """Two edges side by side, of which one turns back: cubics through few spans cross there."""
+    from scipy.interpolate import PchipInterpolator
+
+    def edge(*values):
+        return Arc(bg.Distribution([0.0, 0.3, 0.4, 0.5, 1.0], values))
+
+    plain = bg.read("iea15mw")
+    skin = plain.structure.layers[0]
+    layers = (
+        replace(skin, name="one", start=edge(*[0.1] * 5), end=edge(0.20, 0.205, 0.218, 0.2, 0.19)),
+        replace(skin, name="two", start=edge(0.20, 0.206, 0.22, 0.25, 0.29), end=edge(*[0.4] * 5)),
+    )
+    structure = replace(plain.structure, webs=(), layers=layers)
+    layup = blade_of(replace(plain, structure=structure)).layup
+    coarse = np.linspace(0.0, 1.0, 11)
+    bays = bays_of(layup, coarse)
+    for bay in bays:
+        fine = np.linspace(bay.v[0], bay.v[-1], 2001)
+        lines = PchipInterpolator(bay.v, bay.lines, axis=1)(fine)
+        assert np.diff(lines, axis=0).min() > 2e-4
+    assert sum(len(bay.v) for bay in bays) > len(coarse)  # more were put between
 
 
 def test_webs_stand_on_the_skin(made):

@@ -178,15 +178,13 @@ def _about(patch: Patch, left: Array, right: Array) -> Patch:
 
 
 def _along(on: Any, bay: Bay, line: int) -> Any:
-    """Return the edge along a line of a bay: C1, and no line overtakes the next between points."""
-    from scipy.interpolate import PchipInterpolator
-
+    """Return the edge along a line of a bay, C1."""
     u, v = bay.lines[line], bay.v
     if np.all(u == u[0]):
         return shaping.segment_on(on, (u[0], v[0]), (u[0], v[-1]))
-    flat, slopes = np.stack([u, v], axis=-1), PchipInterpolator(v, u).derivative()(v)
+    flat = np.stack([u, v], axis=-1)
     third = np.diff(v)[:, None] / 3.0
-    tangents = np.stack([slopes, np.ones(len(v))], axis=-1)
+    tangents = np.stack([bay.slopes[line], np.ones(len(v))], axis=-1)
     inner = np.stack([flat[:-1] + third * tangents[:-1], flat[1:] - third * tangents[1:]], axis=1)
     poles = np.concatenate([flat[:1], inner.reshape(-1, 2), flat[-1:]])
     return shaping.edge_on(on, poles, np.repeat(v, [4, *[2] * (len(v) - 2), 4]))

@@ -6,6 +6,7 @@ zone lies between two lines of a bay.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -15,7 +16,7 @@ from bladegen.blade.layup.outlines import Outlines
 from bladegen.blade.layup.shell.lines import mesh_lines
 from bladegen.definition.distribution import united
 from bladegen.definition.structure.structure import Layer, Web
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Mask
 
 __all__ = ["Bay", "bays_of"]
 
@@ -25,6 +26,9 @@ SHORTEST = 5e-3  # of the span; ends nearer to each other, or to root and tip, a
 MEETING = 2e-4  # of u; lines of two bays that end so near to each other go on in each other
 LOOKED_AT = 401  # spans at which edges are looked at for those that pass each other
 THIN = 1e-6  # m
+KEPT = 0.5  # of the distance of two lines at spans, that they keep between these
+BETWEEN = np.arange(1, 16) / 16  # places from span to span at which that is looked at
+HALVINGS = 6  # of the distance from span to span
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +59,24 @@ class Bay:
     layers: tuple[tuple[str, ...], ...]
     whole: frozenset[str]
 
+    @cached_property
+    def slopes(self) -> Array:
+        """Derivatives (lines, m) of the lines over the span, by PCHIP; cubics of Hermite follow."""
+        return _slopes(self.v, self.lines)
+
+    @property
+    def tight(self) -> Mask:
+        """Between which spans (m - 1,) a line comes nearer to the next than it is at both."""
+        step, t = np.diff(self.v), BETWEEN[:, None, None]
+        apart, turns = (np.diff(a, axis=0) for a in (self.lines, _slopes(self.v, self.lines)))
+        low, high = apart[:, :-1], apart[:, 1:]
+        ends = (1.0 - t) ** 2 * (1.0 + 2.0 * t) * low + t**2 * (3.0 - 2.0 * t) * high
+        bent = (1.0 - t) * turns[:, :-1] - t * turns[:, 1:]
+        found: Mask = np.any(
+            ends + t * (1.0 - t) * step * bent < KEPT * np.minimum(low, high), axis=(0, 1)
+        )
+        return found
+
     @property
     def reversed(self) -> "Bay":
         """The same on a mirror image."""
@@ -74,7 +96,7 @@ def bays_of(layup: Layup, v: Array) -> list[Bay]:
     ends = united(*map(_there, placed), _crossings(layup, placed), apart=SHORTEST)
     ends = ends[(ends > SHORTEST) & (ends < 1.0 - SHORTEST)]
     bays = [
-        _bay(layup, np.unique(np.concatenate([[a, b], v[(v > a) & (v < b)]])))
+        _kept_apart(layup, np.unique(np.concatenate([[a, b], v[(v > a) & (v < b)]])))
         for a, b in pairwise([0.0, *ends.tolist(), 1.0])
     ]
     for before, behind in pairwise(bays):
@@ -117,6 +139,25 @@ def _there(one: Web | Layer) -> Array:
         first = max(first, float(grid[max(thick[0] - 1, 0)]))
         last = min(last, float(grid[min(thick[-1] + 1, len(grid) - 1)]))
     return np.array([first, last])
+
+
+def _kept_apart(layup: Layup, v: Array) -> Bay:
+    """Return a bay with as many more spans as its lines need to stay in order between them."""
+    bay = _bay(layup, v)
+    for _ in range(HALVINGS):
+        tight = bay.tight
+        if not tight.any():
+            break
+        v = np.union1d(v, 0.5 * (v[:-1] + v[1:])[tight])
+        bay = _bay(layup, v)
+    return bay
+
+
+def _slopes(v: Array, lines: Array) -> Array:
+    from scipy.interpolate import PchipInterpolator
+
+    found: Array = PchipInterpolator(v, lines, axis=1).derivative()(v)
+    return found
 
 
 def _bay(layup: Layup, v: Array) -> Bay:

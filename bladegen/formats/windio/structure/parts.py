@@ -33,6 +33,7 @@ __all__ = [
     "whole",
 ]
 
+WRAPPED = "a layer around the trailing edge is two here, one a side"
 START, MIDDLE, END = "start_nd_arc", "midpoint_nd_arc", "end_nd_arc"  # of a region of the skin
 ARC = Range(-1.0, 2.0, "of the arc")
 OFFSET = Range(-100.0, 100.0, "m")

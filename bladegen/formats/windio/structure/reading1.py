@@ -26,7 +26,7 @@ from bladegen.definition.structure.positions import (
 from bladegen.definition.structure.structure import NOTHING, Layer, Stated, Structure, Web
 from bladegen.formats.common.document import Node, Notes, Range
 from bladegen.formats.windio.structure import parts
-from bladegen.formats.windio.structure.parts import END, MIDDLE, START
+from bladegen.formats.windio.structure.parts import END, MIDDLE, START, WRAPPED
 
 __all__ = ["read"]
 
@@ -148,7 +148,9 @@ class _Places:
             return LEADING_EDGE
         if name in self.asked or len(self.asked) > parts.DEEPEST:
             place["fixed"].problem(f"{name} rests on itself, must rest on a place that is given")
-        elif key == MIDDLE or name not in self.entries:
+        elif key == MIDDLE:
+            place["fixed"].problem(f"{name!r} is not known here, must be LE; {WRAPPED}")
+        elif name not in self.entries:
             place["fixed"].problem(f"{name!r} is not known here, must be TE, LE or a layer")
         else:
             notes, there = Notes(), self.entries[name]

@@ -530,6 +530,24 @@ def test_on_a_phone_the_blade_stays_in_sight_of_the_sliders(opened):
         assert view["y"] + view["height"] <= one["y"] <= 844
 
 
+def test_another_blade_stands_beside_it_and_goes_again(opened):
+    tab = opened("?blade=nrel5mw&twist=1")
+    alone = picture(tab)
+    click(tab, "Another blade beside it")
+    tab.get_by_role("menuitem", name="dtu10mw").click()
+    holds(tab, beside="dtu10mw", twist="1")
+    tab.locator(".stage[data-beside=true]").wait_for()
+    tab.get_by_text("beside it dtu10mw, 86.4 m long").wait_for()
+    assert picture(tab) != alone
+    other = opened("?" + urlsplit(tab.url).query)
+    other.locator(".stage[data-beside=true]").wait_for()
+    click(tab, "Another blade beside it")
+    tab.get_by_role("menuitem", name="None").click()
+    holds(tab, beside=None)
+    tab.locator(".stage[data-beside=false]").wait_for()
+    noted(opened("?blade=nrel5mw&beside=gone"), "'gone' is not here")
+
+
 def test_an_export_that_fails_is_said_and_the_page_goes_on(opened, monkeypatch):
     def submit(worker, make, job):
         failed = Future()

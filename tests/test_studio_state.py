@@ -151,8 +151,10 @@ def test_one_drag_is_one_step_and_the_section_is_none():
 
 
 def test_what_is_seen_and_how_files_are_is_no_step_and_stays():
-    seen = replace(State("nrel5mw"), off="affine", files=Delivery("mm", 0.5))
-    assert to_query(seen) == "blade=nrel5mw&off=affine&unit=mm&tolerance=0.5"
+    files = Delivery("mm", 0.5)
+    seen = replace(State("nrel5mw"), off="affine", files=files, beside="dtu10mw")
+    words = "blade=nrel5mw&off=affine&unit=mm&tolerance=0.5&beside=dtu10mw"
+    assert to_query(seen) == words
     assert from_query(to_query(seen), KNOWN, "iea15mw") == seen
     thick = replace(seen, thickness=1.1)
     history = History(State("nrel5mw", thickness=1.1)).moved(thick)

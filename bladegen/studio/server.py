@@ -180,9 +180,9 @@ def _application(studio: Studio) -> Any:
     style = (Path(__file__).parent / "page" / "studio.css").read_text(encoding="utf-8")
 
     @app.get("/studio/{name}/{count}/{which}")
-    def packet(name: str, count: int, which: Literal["now", "baseline"]) -> Response:  # noqa: ARG001
-        now, baseline = studio.packets.get(name, (b"", b""))
-        content = now if which == "now" else baseline
+    def packet(name: str, count: int, which: Literal["now", "baseline", "beside"]) -> Response:  # noqa: ARG001
+        known = studio.packets.get(name, (b"", b"", b""))
+        content = known[("now", "baseline", "beside").index(which)]
         return Response(
             content,
             200 if content else 404,

@@ -27,7 +27,8 @@ class Studio:
     worker, knower : Worker
         Makes files; answers what takes longer than a frame.
     packets : dict
-        The latest surface of each tab and its baseline's, by a name that nobody can guess.
+        The latest surface of each tab, its baseline's, and that of the blade beside it, by a name
+        that nobody can guess.
     visits : Visits
         Page loads that no tab has connected to yet.
     """
@@ -37,7 +38,7 @@ class Studio:
     first: str
     worker: Worker = field(default_factory=lambda: Worker(worker.load))
     knower: Worker = field(default_factory=lambda: Worker(answers.load))
-    packets: dict[str, tuple[bytes, bytes]] = field(default_factory=dict)
+    packets: dict[str, tuple[bytes, bytes, bytes]] = field(default_factory=dict)
     visits: Visits = field(default_factory=Visits)
 
     def end(self) -> None:

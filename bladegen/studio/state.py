@@ -48,6 +48,8 @@ class State:
         Which part of the difference from the baseline is coloured, of `difference.PARTS`.
     files : Delivery
         How files are written.
+    beside : str
+        Another blade's key in the library, shown as it is beside this one; "" for none.
     """
 
     blade: str
@@ -62,6 +64,7 @@ class State:
     loft: Loft = PLAIN
     off: str = "all"
     files: Delivery = USUAL
+    beside: str = ""
 
     @property
     def changed(self) -> bool:
@@ -97,7 +100,7 @@ class State:
 
     def seen_as(self, other: "State") -> "State":
         """Return another state, looked at and written as this one: no step of a history."""
-        return replace(other, at=self.at, off=self.off, files=self.files)
+        return replace(other, at=self.at, off=self.off, files=self.files, beside=self.beside)
 
     def reset(self) -> "State":
         """Return the baseline, with the same section shown."""
@@ -142,6 +145,8 @@ def to_query(state: State) -> str:
         words["unit"] = state.files.unit
     if state.files.tolerance != plain.files.tolerance:
         words["tolerance"] = f"{state.files.tolerance:g}"
+    if state.beside:
+        words["beside"] = state.beside
     for entry in fields(State):
         value = getattr(state, entry.name)
         if isinstance(value, float) and value != getattr(plain, entry.name):
@@ -169,6 +174,7 @@ CHOICES: dict[str, Callable[[State, str], State]] = {
     "off": lambda state, text: replace(state, off=known_part(text)),
     "unit": lambda state, text: replace(state, files=replace(state.files, unit=text)),
     "tolerance": _tolerance,
+    "beside": lambda state, text: replace(state, beside=text),
 }
 KEYS = ("blade", "t", "window", *(control.name for control in AFFINE), "at", *CHOICES)  # of links
 

@@ -19,7 +19,7 @@ def stage() -> Any:
     """Put a 3D view on the page that is being built.
 
     Its methods, called by `run_method`: ``show(url, baseline)``, ``paint(colours)``,
-    ``overlay(visible)``, ``look(view)``.
+    ``overlay(visible)``, ``look(view)``, ``beside(url)``.
     """
     element = _kind("stage")()
     element.props["label"] = WORDS

@@ -51,7 +51,9 @@ class Live:
         from nicegui import background_tasks
 
         plain = State(state.blade)
-        state = replace(state, off=plain.off, files=plain.files)  # which change no answer
+        state = replace(
+            state, off=plain.off, files=plain.files, beside=plain.beside
+        )  # which change no answer
         if state == self._wanted and not self.stale:
             return
         self._wanted = state

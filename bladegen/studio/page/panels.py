@@ -7,6 +7,7 @@ from typing import Any
 
 from bladegen.studio.controls import AFFINE, END, START
 from bladegen.studio.page.bar import bar, key
+from bladegen.studio.page.beside import beside
 from bladegen.studio.page.buttons import toggle
 from bladegen.studio.page.elements import stage
 from bladegen.studio.page.figures import figures
@@ -165,6 +166,7 @@ def _view(page: Page) -> Callable[[Shown], None]:
                 button.props(f'flat dense no-caps size=12px padding="2px 8px" aria-label="{words}"')
                 button.on_click(lambda view=view: page.stage.run_method("look", view))
             toggle("palette", "Colour what lies off the baseline", True, page.stage, "paint")
+            beside(page)
             toggle("grid_on", "Outline of the baseline", False, page.stage, "overlay")
         key = legend(page)
 
@@ -176,7 +178,16 @@ def _view(page: Page) -> Callable[[Shown], None]:
         tip = scene.sections[-1].mean(axis=0)
         under.set_content(
             f"{tip[2]:.1f} m long, chord to {scene.curves.chord.max():.2f} m, "
-            f"prebend {scene.curves.prebend[-1]:+.2f} m"
+            f"prebend {scene.curves.prebend[-1]:+.2f} m{_beside(page, scene.state.beside)}"
         )
 
     return show
+
+
+def _beside(page: Page, key: str) -> str:
+    """Say which blade stands beside it."""
+    library = page.studio.library
+    if key not in library.labels:
+        return ""
+    length = library.baseline(key).blade.length
+    return f"<br>beside it {escape(library.labels[key])}, {length:.1f} m long"

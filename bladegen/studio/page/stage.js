@@ -17,6 +17,9 @@ const VIEWS = {
 
 const ROOM = [0.92, 0.7]; // of the view's half width and height that a fit fills
 
+const BESIDE = 0xd9c7a0; // the other blade
+const APART = 0.075; // of its length, which it stands below and behind
+
 const REST_MS = 500;
 const ROUGH = 0.7; // pixels drawn for one that is shown, while a picture without a GPU moves
 const FINE = 1.5;
@@ -198,6 +201,39 @@ export default {
       this.ghost.geometry = new THREE.BufferGeometry();
       this.ghost.geometry.setAttribute("position", new THREE.Float32BufferAttribute(lines, 3));
     },
+    // Another blade, as it is, beside this one; none without a place of it.
+    async beside(url) {
+      const packet = url ? await this.fetched(url) : null;
+      if (!this.renderer) return;
+      if (this.other) {
+        this.scene.remove(this.other);
+        this.other.geometry.dispose();
+      }
+      this.other = packet ? this.neighbour(packet) : null;
+      if (this.other) this.scene.add(this.other);
+      this.$el.dataset.beside = Boolean(this.other);
+      this.fit();
+    },
+    neighbour(packet) {
+      const [k, n] = new Uint32Array(packet, 0, 3);
+      const points = new Float32Array(packet, 12, 3 * k * n);
+      const at = points.map((_, i) => points[3 * Math.floor(i / 3) + ((i + 2) % 3)]);
+      const index = [];
+      for (let i = 0; i + 1 < k; i++)
+        for (let j = 0; j < n; j++) {
+          const [a, b] = [i * n + j, i * n + ((j + 1) % n)];
+          index.push(a, a + n, b + n, a, b + n, b);
+        }
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(at, 3));
+      geometry.setIndex(index);
+      geometry.computeVertexNormals();
+      const material = new THREE.MeshLambertMaterial({ color: BESIDE, side: THREE.DoubleSide });
+      const mesh = new THREE.Mesh(geometry, material);
+      const apart = APART * at[3 * (k - 1) * n];
+      mesh.position.set(0, -apart, apart);
+      return mesh;
+    },
     recolour() {
       if (!this.off || !this.renderer) return;
       const dark = document.body.classList.contains("body--dark");
@@ -239,6 +275,11 @@ export default {
       const v = new THREE.Vector3();
       for (let i = 0; i < this.k * this.n; i += 7) {
         v.fromBufferAttribute(at, i);
+        if (v.x >= from * this.length - 1e-3 && v.x <= to * this.length + 1e-3) part.push(v.clone());
+      }
+      const other = this.other?.geometry.attributes.position;
+      for (let i = 0; i < (other?.count ?? 0); i += 7) {
+        v.fromBufferAttribute(other, i).add(this.other.position);
         if (v.x >= from * this.length - 1e-3 && v.x <= to * this.length + 1e-3) part.push(v.clone());
       }
       const box = new THREE.Box3().setFromPoints(part);

@@ -31,7 +31,7 @@ class Shown:
     """What is sent to a tab for a state."""
 
     scene: Scene
-    packets: tuple[bytes, bytes]
+    packets: tuple[bytes, bytes, bytes]
     section: str
     planform: str
 
@@ -61,6 +61,7 @@ class Page:
         self.live = Live(studio, lambda: self.client.is_deleted)
         self._wanted: State | None = None
         self._working = False
+        self._beside = ""
         self._count = 0
         self._rng = np.random.default_rng()
         self.client.on_delete(lambda: studio.packets.pop(self.name, None))
@@ -107,6 +108,8 @@ class Page:
 
         try:
             await run.io_bound(self.studio.library.baseline, self.state.blade, self.state.loft)
+            if self.state.beside:
+                await run.io_bound(self.studio.library.baseline, self.state.beside)
         except BladegenError as error:
             self.trouble = str(error)
             self.history = History(from_query("", self.controls, self.studio.first))
@@ -115,6 +118,18 @@ class Page:
         """Show another blade of the library."""
         if key != self.state.blade:
             await self._take(self.state.baseline(key))
+
+    async def put_beside(self, key: str) -> None:
+        """Show another blade beside this one, or none; what cannot be prepared is said."""
+        from nicegui import run
+
+        try:
+            if key:
+                await run.io_bound(self.studio.library.baseline, key)
+        except BladegenError as error:
+            self.say(str(error), bad=True)
+        else:
+            self.choose(beside=key)
 
     async def remake(self, loft: Loft) -> None:
         """Make the blade another way; its changes stay."""
@@ -215,9 +230,12 @@ class Page:
         baseline = self.studio.library.baseline(state.blade, state.loft)
         scene = baseline.scene(state)
         plain = baseline.at(state.at)
+        other = b""
+        if state.beside in self.studio.library.labels:  # an upload may be gone
+            other = self.studio.library.baseline(state.beside).at(state.at).packet()
         return Shown(
             scene,
-            (scene.packet(), plain.packet()),
+            (scene.packet(), plain.packet(), other),
             charts.section(scene, plain, placed=self.placed),
             charts.planform(scene, plain),
         )
@@ -232,6 +250,9 @@ class Page:
         self.studio.worker.begin()  # it needs some seconds, and somebody may export soon
         place = f"/studio/{self.name}/{self._count}"
         self.stage.run_method("show", f"{place}/now", f"{place}/baseline" if refit else "")
+        if shown.scene.state.beside != self._beside:
+            self._beside = shown.scene.state.beside
+            self.stage.run_method("beside", f"{place}/beside" if shown.packets[2] else "")
         if not refit:  # the browser asks for the surface while it is told the rest
             await asyncio.sleep(0)
         self.charts(shown)

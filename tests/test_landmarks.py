@@ -113,6 +113,16 @@ def test_an_upright_base_closed_to_a_point_is_opened_at_its_corners(order, lean)
     assert_allclose(placed, lm.landmarks(open_, 101), atol=1e-3 + 2 * abs(lean))
 
 
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize("lost", [0, 1])
+def test_a_base_closed_to_one_of_its_corners_is_opened(order, lost):
+    """As in turbine files, whose last point is the first again, instead of the other corner."""
+    open_ = naca(0.24, 0.02, 0.006)
+    closed = np.concatenate([open_[: len(open_) - lost], open_[:1]])[::order]
+    assert lm.contour(closed).opened == pytest.approx(open_[0, 1] - open_[-1, 1], rel=0.02)
+    assert_allclose(lm.landmarks(closed, 101), lm.landmarks(open_, 101), rtol=0, atol=1e-5)
+
+
 def test_a_base_whose_side_runs_straight_up_ends_in_its_corner():
     steep = naca(0.3, 0.02, 0.03)
     steep[1] = steep[0] + [0.0, 0.01]

@@ -43,6 +43,7 @@ REPEATED = 1e-9  # chords; points nearer than this are one point
 LARGEST = 1e6  # chords; points farther apart than this cannot be told from repeated ones
 CORNER_TURN = np.radians(40.0)  # leading edges turn by up to 28 degrees a point in real files
 BLUNT_BASE = 0.02  # chords; corners nearer than this to the trailing edge end the sides
+LEANING = 0.5  # of a base's height: farther along the chord it is a side, not a base
 BLUNT_MINIMUM = 1e-3  # chords; a base lower than this is rounding, not a flatback
 SETTLED = 1e-9  # chords; a step below that leaves its square
 REMEMBERED = 512  # contours, and sets of landmarks; some 20 MB
@@ -228,12 +229,13 @@ def _placed(curve: Contour, parameters_in_bytes: bytes) -> Array:
 
 
 def _without_base(points: Array) -> tuple[Array, float]:
-    """Cut a closed blunt base off at its corners; prolong the sides to the edge's plane."""
+    """Cut a closed blunt base off at its corners, one of which may be the point that closes it."""
     if np.hypot(*(points[0] - points[-1])) > REPEATED:
         return points, 0.0
     suction, pressure = _base_corner(points), _base_corner(points[::-1])
-    height = float(np.hypot(*(points[suction] - points[len(points) - 1 - pressure])))
-    if not (suction and pressure) or height < BLUNT_MINIMUM:
+    base = np.abs(points[suction] - points[len(points) - 1 - pressure])
+    upright = (suction and pressure) or base[0] < LEANING * base[1]
+    if not upright or not np.hypot(*base) >= BLUNT_MINIMUM:
         return points, 0.0
     x = points[0, 0]
     sides = points[suction : len(points) - pressure]
@@ -254,10 +256,7 @@ def _base_corner(points: Array) -> int:
 
 
 def _prolonged(corner: Array, before: Array, x: float) -> Array:
-    """Prolong the line from `before` through `corner` to the abscissa `x`, if it gets there.
-
-    A line so steep that it would end far from the corner ends in it.
-    """
+    """Prolong the line from `before` through `corner` to the abscissa `x`, unless it is steep."""
     run, rise = corner - before
     missing = x - corner[0]
     if abs(missing * rise) > BLUNT_BASE * abs(run):

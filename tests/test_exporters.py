@@ -249,6 +249,6 @@ def test_the_options_of_export_are_named_and_their_defaults_those_of_options():
     for entry in fields(exporters.Options):
         assert entry.name in given
         assert f"    {entry.name}" in bg.export.__doc__
-        if entry.name not in ("spacing", "tip"):
+        if entry.name not in ("spacing", "extrusion", "tip"):
             assert given[entry.name].default == entry.default
     assert "numpy" not in str(inspect.signature(bg.export))

@@ -8,18 +8,17 @@ import typer
 from bladegen.cli.options.common import (
     LANDMARKS,
     MAKING,
-    PRODUCING,
     BladeName,
     Formats,
     Landmarks,
     Making,
     Mirror,
-    Producing,
     Target,
     suffixes_of,
 )
 from bladegen.cli.options.groups import grouped
 from bladegen.cli.options.perturbing import NO_CHANGES, Changes
+from bladegen.cli.options.producing import PRODUCING, Producing
 from bladegen.cli.terminal import print_summary, progress_bar
 from bladegen.errors import BladegenError
 

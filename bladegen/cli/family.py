@@ -11,16 +11,15 @@ import typer
 from bladegen.cli.options.common import (
     LANDMARKS,
     MAKING,
-    PRODUCING,
     BladeName,
     Making,
     Mirror,
-    Producing,
     Target,
     suffixes_of,
 )
 from bladegen.cli.options.groups import grouped
 from bladegen.cli.options.perturbing import ChordLine
+from bladegen.cli.options.producing import PRODUCING, Producing
 from bladegen.cli.terminal import print_table, remark, variants_bar
 from bladegen.errors import FamilyError
 from bladegen.support.stopping import Stopped

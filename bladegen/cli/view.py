@@ -45,6 +45,7 @@ class What(StrEnum):
     layup = "layup"
     combs = "combs"
     grid = "grid"
+    volume = "volume"
     all = "all"
 
 

@@ -203,6 +203,9 @@ def _measure(report: dict[str, Any], products: Products, kind: Kind, path: Path)
         report["solid"] = _solid(products, path, report["figures"]["volume_m3"])
     elif kind is Kind.grid:
         report.setdefault("grid", grid_figures(products.grid))
+    elif kind is Kind.volume:
+        products.progress("measuring the volume")
+        report["volume"] = products.volume.figures
     elif kind is Kind.shell:
         shell = products.shell
         report["shell"] = {**shell.quality, "mass_kg": shell.mass, "sections": len(shell.sections)}

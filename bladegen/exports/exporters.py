@@ -22,6 +22,7 @@ from bladegen.support.threads import one_thread
 from bladegen.surface.deviation import Deviation
 from bladegen.surface.grids import grid
 from bladegen.surface.tips import Tip, flat_tip
+from bladegen.surface.volumes.volume import Extrusion
 
 __all__ = ["aside", "export", "require_size", "write"]
 
@@ -43,6 +44,7 @@ def export(
     largest: int | None = None,
     spans: "Array | None" = None,
     spacing: grid.Spacing | None = None,
+    extrusion: Extrusion | None = None,
     element: float = Options.element,
     laminates: bool = Options.laminates,
     polars: str | None = None,
@@ -85,7 +87,9 @@ def export(
     spans : (k,) array, optional
         Solids: span fractions of sections to begin with, such as those of a blade that is alike.
     spacing : bladegen.surface.grids.grid.Spacing, optional
-        Grids: how many points, and cell sizes as fractions of a side and of the axis.
+        Grids and volumes: how many points, and cell sizes as fractions of a side and of the axis.
+    extrusion : bladegen.surface.volumes.volume.Extrusion, optional
+        Volumes: first height, growth, distance and smoothing.
     element : float
         Shell models: size of the elements [m], 0.02 to 20.
     laminates : bool
@@ -131,6 +135,7 @@ def export(
         "largest": largest,
         "spans": spans,
         "spacing": grid.Spacing() if spacing is None else spacing,
+        "extrusion": Extrusion() if extrusion is None else extrusion,
         "element": element,
         "laminates": laminates,
         "polars": polars,

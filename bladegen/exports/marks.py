@@ -4,7 +4,8 @@
 function from a file's bytes to bytes that hold the line, where readers of that format expect such
 words: STEP's header and product, IGES' start section, the headers of STL and BREP, comments, the
 extras of glTF, metadata of 3MF, VTK, PNG and workbooks.  CGNS gets its descriptor as it is written
-(`grid_files`).  PLOT3D has no place; the report lists its files as all others.
+(`grid_files`).  OpenFOAM's packed mesh says it in its dictionaries.  PLOT3D has no place; the
+report lists its files as all others.
 """
 
 import json

@@ -14,11 +14,18 @@ from bladegen.support.values import brief
 from bladegen.surface import mesh
 from bladegen.surface.grids import grid
 from bladegen.surface.tips import Tip, flat_tip
+from bladegen.surface.volumes.volume import Extrusion
 
 __all__ = ["UNITS", "Kind", "Options"]
 
 UNITS = {"m": 1.0, "mm": 1000.0}
-_FIXED_UNITS = {".glb": "m", ".3mf": "mm", ".cgns": "m"}
+_FIXED_UNITS = {
+    ".glb": "m",
+    ".3mf": "mm",
+    ".cgns": "m",
+    ".volume.cgns": "m",
+    ".volume.foam.zip": "m",
+}
 TOLERANCES = 1e-6, 0.05  # m; millimetres that are given for metres leave the range
 
 
@@ -29,6 +36,7 @@ class Kind(StrEnum):
     curves = "curves"
     triangles = "triangles"
     grid = "grid"
+    volume = "volume"
     shell = "shell"
     structure = "structure"
     definition = "definition"
@@ -51,7 +59,7 @@ class Options:
     stations : int
         Meshes: how many sections.
     tip : callable
-        Solids, meshes and grids: `tips.flat_tip` or `tips.round_tip`.
+        Solids, meshes, grids and volumes: `tips.flat_tip` or `tips.round_tip`.
     unit : str
         Meshes, PLOT3D and VTK: "m" or "mm".  STEP and 3MF are always in millimetres, GLB and
         CGNS in metres.
@@ -68,7 +76,9 @@ class Options:
     spans : (k,) array, optional
         Solids: sections to begin with, such as those of a blade that is alike.
     spacing : Spacing
-        Grids: how many points, and cell sizes where it matters.
+        Grids and volumes: how many points, and cell sizes where it matters.
+    extrusion : Extrusion
+        Volumes: first height, growth, distance.
     element : float
         Shell models: size of the elements [m].
     laminates : bool
@@ -90,6 +100,7 @@ class Options:
     largest: int | None = None
     spans: Array | None = None
     spacing: grid.Spacing = field(default_factory=grid.Spacing)
+    extrusion: Extrusion = field(default_factory=Extrusion)
     element: float = 1.0
     laminates: bool = False
     polars: str | None = None
@@ -115,6 +126,8 @@ class Options:
         function(self.tip, "tip", "bladegen.surface.tips.flat_tip or round_tip", ExportError)
         must = "a bladegen.surface.grids.grid.Spacing"
         instance(self.spacing, grid.Spacing, "spacing", must, ExportError)
+        must = "a bladegen.surface.volumes.volume.Extrusion"
+        instance(self.extrusion, Extrusion, "extrusion", must, ExportError)
 
     __repr__ = brief
 
@@ -133,14 +146,16 @@ class Options:
             if suffix != ".brep":  # which has no place for it
                 told = {"author": self.author, "organisation": self.organisation}
                 found |= {key: word(value) for key, value in told.items() if value}
-        if kind is Kind.grid:
+        if kind in (Kind.grid, Kind.volume):
             spacing = asdict(self.spacing).items()
             found |= {f"grid_{k}": "coupled" if v is None else word(v) for k, v in spacing}
+            grown = asdict(self.extrusion).items() if kind is Kind.volume else ()
+            found |= {f"volume_{k}": word(v) for k, v in grown if v is not None}
         if kind in (Kind.triangles, Kind.table):
             found["stations"] = word(self.stations)
-        if kind in (Kind.solid, Kind.triangles, Kind.grid):  # which curves end before
+        if kind in (Kind.solid, Kind.triangles, Kind.grid, Kind.volume):  # which curves end before
             found["tip"] = word(self.tip)
-        if kind in (Kind.triangles, Kind.grid):
+        if kind in (Kind.triangles, Kind.grid, Kind.volume):
             found["unit"] = _FIXED_UNITS.get(suffix, self.unit)
         if kind is Kind.shell:
             found |= {"element": word(self.element), "laminates": word(self.laminates)}

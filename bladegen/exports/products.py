@@ -1,4 +1,4 @@
-"""What a blade's files are made from: its solid, its mesh, its grid, each made once."""
+"""What a blade's files are made from: its solid, mesh, grid and volume, each made once."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -17,6 +17,7 @@ from bladegen.exports.provenance import Provenance, made_from
 from bladegen.surface import mesh
 from bladegen.surface.grids import grid
 from bladegen.surface.tips import flat_tip
+from bladegen.surface.volumes import volume
 
 __all__ = ["Products"]
 
@@ -54,6 +55,12 @@ class Products:
         """The structured grid."""
         self.progress("making the grid")
         return grid.from_blade(self.blade, self.options.spacing, self.options.tip)
+
+    @cached_property
+    def volume(self) -> volume.Volume:
+        """The volume around the structured grid."""
+        made, progress = self.grid, self.progress
+        return volume.volume_of(self.blade, made, self.options.extrusion, progress)
 
     @cached_property
     def inside(self) -> assembly.Inside:

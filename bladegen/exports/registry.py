@@ -5,31 +5,20 @@ which product: the solid, the mesh, the grid, or the blade itself.  A package of
 offers its rows by the entry point ``bladegen.exporters``; bladegen's own come first.
 """
 
-import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-import numpy as np
-
-from bladegen.blade.layup.shell.inp import inp_lines
-from bladegen.cad import curves, exchange
-from bladegen.cad.structure import assembly
 from bladegen.errors import ExportError
-from bladegen.exports.definitions import marking
-from bladegen.exports.options import UNITS, Kind
+from bladegen.exports.options import Kind
 from bladegen.exports.products import Products
-from bladegen.formats import writing
+from bladegen.exports.writers import others, solids, surfaces
 from bladegen.support.arguments import suggestion
 from bladegen.support.plugins import Offered, guarded, offered
-from bladegen.surface import gltf, mesh_files
-from bladegen.surface.grids import grid_files
-from bladegen.views import preview
 
 __all__ = ["FORMATS", "Format", "format_of", "formats", "plugged", "plugins", "suffix_of"]
 
-logger = logging.getLogger(__name__)
 GROUP = "bladegen.exporters"  # of entry points
 
 Writer = Callable[[Products, Path], None]
@@ -59,179 +48,99 @@ class Format:
     suffix: str = ""
 
 
-def _write_step(products: Products, path: Path) -> None:
-    options = products.options
-    exchange.write_step(products.solid, path, schema=options.step_schema, **options.told)
-
-
-def _write_iges(products: Products, path: Path) -> None:
-    exchange.write_iges(products.solid, path, **products.options.told)
-
-
-def _write_brep(products: Products, path: Path) -> None:
-    exchange.write_brep(products.solid, path)
-
-
-def _write_curves(products: Products, path: Path) -> None:
-    options = products.options
-    told = {"schema": options.step_schema, **options.told}
-    curves.write_curves(products.solid, products.blade, path, **told)
-
-
-def _write_structure(products: Products, path: Path) -> None:
-    options = products.options
-    told = {"schema": options.step_schema, **options.told}
-    assembly.write_structure(products.inside, products.blade.name, path, **told)
-
-
-def _write_stl(products: Products, path: Path) -> None:
-    scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS[products.options.unit])
-    path.write_bytes(scaled.export(file_type="stl"))
-
-
-def _write_regions_stl(products: Products, path: Path) -> None:
-    text = mesh_files.stl_text(products.mesh, scale=UNITS[products.options.unit])
-    path.write_text(text, encoding="ascii")
-
-
-def _write_obj(products: Products, path: Path) -> None:
-    unit = products.options.unit
-    header = f"bladegen {' '.join(products.blade.name.split())}, unit: {unit}"
-    text = mesh_files.obj_text(products.mesh, header, scale=UNITS[unit])
-    path.write_text(text, encoding="utf-8")
-
-
-def _write_ply(products: Products, path: Path) -> None:
-    scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS[products.options.unit])
-    path.write_bytes(scaled.export(file_type="ply", vertex_normal=False))
-
-
-def _write_glb(products: Products, path: Path) -> None:
-    name = products.blade.name
-    path.write_bytes(gltf.glb(name, [gltf.Standing(name, products.mesh, np.eye(3), np.zeros(3))]))
-
-
-def _write_3mf(products: Products, path: Path) -> None:
-    scaled = mesh_files.to_trimesh(products.mesh, scale=UNITS["mm"])
-    package = mesh_files.with_steady_ids(scaled.export(file_type="3mf"))
-    path.write_bytes(mesh_files.with_materials(package, products.mesh, products.blade.name))
-
-
-def _write_vtp(products: Products, path: Path) -> None:
-    preview.write_vtp(products.mesh, path, scale=UNITS[products.options.unit])
-
-
-def _write_p3d(products: Products, path: Path) -> None:
-    grid_files.write_plot3d(products.grid, path, scale=UNITS[products.options.unit])
-
-
-def _write_fmt(products: Products, path: Path) -> None:
-    grid_files.write_plot3d_text(products.grid, path, scale=UNITS[products.options.unit])
-
-
-def _write_cgns(products: Products, path: Path) -> None:
-    made = products.made_from(Kind.grid, ".cgns")
-    grid_files.write_cgns(products.grid, path, note=made.text)
-
-
-def _write_vtu(products: Products, path: Path) -> None:
-    grid_files.write_vtu(products.grid, path, scale=UNITS[products.options.unit])
-
-
-def _write_inp(products: Products, path: Path) -> None:
-    lines = inp_lines(products.shell, laminates=products.options.laminates)
-    path.write_text("".join(f"{line}\n" for line in lines), encoding="ascii")
-
-
-def _write_csv(products: Products, path: Path) -> None:
-    blade = products.blade
-    eta = blade.stations(products.options.stations)
-    grid_files.write_sections(eta, blade.u, blade.sections(eta), path)
-
-
-def _write_png(products: Products, path: Path) -> None:
-    products.progress("rendering")
-    preview.picture(products.blade, path)
-
-
-def _write_definition(products: Products, path: Path) -> None:
-    options = products.options
-    said = writing.write(
-        products.blade,
-        path,
-        polars=options.polars,
-        reynolds=options.reynolds,
-        progress=products.progress,
-        mark=marking(products.made_from(Kind.definition, path.suffix.lower())),
-    )
-    products.remarks.extend(said)
-    for remark in said:
-        logger.info("%s: %s", path.name, remark)
-
-
 FORMATS = {
     ".step": Format(
-        Kind.solid, "STEP AP242 (or AP214), one closed solid with named faces, mm", _write_step
+        Kind.solid,
+        "STEP AP242 (or AP214), one closed solid with named faces, mm",
+        solids.write_step,
     ),
-    ".stp": Format(Kind.solid, "the same as .step", _write_step),
-    ".iges": Format(Kind.solid, "IGES 5.3, one closed solid, mm", _write_iges),
-    ".igs": Format(Kind.solid, "the same as .iges", _write_iges),
-    ".brep": Format(Kind.solid, "OCCT's own BREP, one closed solid, mm", _write_brep),
+    ".stp": Format(Kind.solid, "the same as .step", solids.write_step),
+    ".iges": Format(Kind.solid, "IGES 5.3, one closed solid, mm", solids.write_iges),
+    ".igs": Format(Kind.solid, "the same as .iges", solids.write_iges),
+    ".brep": Format(Kind.solid, "OCCT's own BREP, one closed solid, mm", solids.write_brep),
     ".curves.step": Format(
-        Kind.curves, "STEP, stations, edges and axes as named curves, mm", _write_curves
+        Kind.curves, "STEP, stations, edges and axes as named curves, mm", solids.write_curves
     ),
     ".structure.step": Format(
         Kind.structure,
         "STEP, skin cut where layers end and webs, an assembly, mm",
-        _write_structure,
+        solids.write_structure,
     ),
-    ".stl": Format(Kind.triangles, "STL, binary triangles, m (or mm)", _write_stl),
+    ".stl": Format(Kind.triangles, "STL, binary triangles, m (or mm)", surfaces.write_stl),
     ".regions.stl": Format(
         Kind.triangles,
         "STL, text, a named solid a region for meshers, m (or mm)",
-        _write_regions_stl,
+        surfaces.write_regions_stl,
     ),
-    ".glb": Format(Kind.triangles, "glTF binary, triangles for the web, m", _write_glb),
-    ".ply": Format(Kind.triangles, "PLY, binary triangles, m (or mm)", _write_ply),
+    ".glb": Format(Kind.triangles, "glTF binary, triangles for the web, m", surfaces.write_glb),
+    ".ply": Format(Kind.triangles, "PLY, binary triangles, m (or mm)", surfaces.write_ply),
     ".obj": Format(
-        Kind.triangles, "Wavefront OBJ, triangles in groups by region, m (or mm)", _write_obj
+        Kind.triangles,
+        "Wavefront OBJ, triangles in groups by region, m (or mm)",
+        surfaces.write_obj,
     ),
     ".3mf": Format(
-        Kind.triangles, "3MF, triangles for printing, a material a region, mm", _write_3mf
+        Kind.triangles, "3MF, triangles for printing, a material a region, mm", surfaces.write_3mf
     ),
-    ".vtp": Format(Kind.triangles, "VTK poly data, triangles for ParaView, m (or mm)", _write_vtp),
+    ".vtp": Format(
+        Kind.triangles, "VTK poly data, triangles for ParaView, m (or mm)", surfaces.write_vtp
+    ),
     ".p3d": Format(
-        Kind.grid, "PLOT3D multi-block grid, Fortran unformatted, m (or mm)", _write_p3d
+        Kind.grid, "PLOT3D multi-block grid, Fortran unformatted, m (or mm)", surfaces.write_p3d
     ),
-    ".fmt": Format(Kind.grid, "PLOT3D multi-block grid, text, m (or mm)", _write_fmt),
+    ".fmt": Format(Kind.grid, "PLOT3D multi-block grid, text, m (or mm)", surfaces.write_fmt),
     ".cgns": Format(
-        Kind.grid, "CGNS structured grid with connectivity and families, m", _write_cgns
+        Kind.grid, "CGNS structured grid with connectivity and families, m", surfaces.write_cgns
     ),
-    ".vtu": Format(Kind.grid, "VTK unstructured quadrilaterals of the grid, m (or mm)", _write_vtu),
+    ".vtu": Format(
+        Kind.grid, "VTK unstructured quadrilaterals of the grid, m (or mm)", surfaces.write_vtu
+    ),
+    ".volume.p3d": Format(
+        Kind.volume,
+        "PLOT3D multi-block volume, Fortran unformatted, m (or mm)",
+        surfaces.write_volume_p3d,
+    ),
+    ".volume.fmt": Format(
+        Kind.volume, "PLOT3D multi-block volume, text, m (or mm)", surfaces.write_volume_fmt
+    ),
+    ".volume.cgns": Format(
+        Kind.volume,
+        "CGNS structured volume with connectivity, families and boundary conditions, m",
+        surfaces.write_volume_cgns,
+    ),
+    ".volume.foam.zip": Format(
+        Kind.volume, "OpenFOAM's polyMesh of the volume with patches, m", surfaces.write_volume_foam
+    ),
     ".inp": Format(
-        Kind.shell, "shell model of skin and webs for CalculiX and Abaqus, m, N, kg", _write_inp
+        Kind.shell,
+        "shell model of skin and webs for CalculiX and Abaqus, m, N, kg",
+        others.write_inp,
     ),
     ".sections.csv": Format(
-        Kind.table, "sections as a table: eta, landmark, u, x, y, z, m", _write_csv
+        Kind.table, "sections as a table: eta, landmark, u, x, y, z, m", others.write_csv
     ),
     ".yaml": Format(
-        Kind.definition, "windIO 2, a perturbed blade with airfoils of its own", _write_definition
+        Kind.definition,
+        "windIO 2, a perturbed blade with airfoils of its own",
+        others.write_definition,
     ),
     ".dat": Format(
         Kind.definition,
         "OpenFAST, an AeroDyn blade file and airfoil files with polars",
-        _write_definition,
+        others.write_definition,
     ),
     ".htc": Format(
-        Kind.definition, "HAWC2, c2_def, ae and pc file, airfoils by thickness", _write_definition
+        Kind.definition,
+        "HAWC2, c2_def, ae and pc file, airfoils by thickness",
+        others.write_definition,
     ),
     ".csv": Format(
-        Kind.definition, "spanwise table, airfoils in a folder beside it", _write_definition
+        Kind.definition, "spanwise table, airfoils in a folder beside it", others.write_definition
     ),
     ".xlsx": Format(
-        Kind.definition, "workbook in the layout of the IEA tabular files", _write_definition
+        Kind.definition, "workbook in the layout of the IEA tabular files", others.write_definition
     ),
-    ".png": Format(Kind.picture, "picture of the blade", _write_png),
+    ".png": Format(Kind.picture, "picture of the blade", surfaces.write_png),
 }
 
 

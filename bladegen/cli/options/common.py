@@ -2,20 +2,17 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.options.groups import COMMAND
 from bladegen.cli.options.targets import Target, ending_in
 from bladegen.errors import BladegenError
 
 __all__ = [
     "LANDMARKS",
     "MAKING",
-    "PRODUCING",
     "Airfoils",
     "BladeName",
     "Formats",
@@ -24,7 +21,6 @@ __all__ = [
     "Making",
     "Mirror",
     "Polars",
-    "Producing",
     "Reynolds",
     "Target",
     "ending_in",
@@ -32,9 +28,6 @@ __all__ = [
 ]
 
 LANDMARKS = 401
-TOLERANCE = "0.3mm"
-LIGHT, LIGHT_BYTES = "1mm", 2_000_000
-GRIDS = "Structured grids: p3d, fmt, cgns, vtu"
 
 
 class PathKind(StrEnum):
@@ -42,27 +35,6 @@ class PathKind(StrEnum):
 
     spline = "spline"
     geodesic = "geodesic"
-
-
-class TipKind(StrEnum):
-    """How the tip is closed."""
-
-    flat = "flat"
-    round = "round"
-
-
-class Unit(StrEnum):
-    """Units of mesh files."""
-
-    m = "m"
-    mm = "mm"
-
-
-class StepSchema(StrEnum):
-    """Application protocols of STEP files."""
-
-    ap242 = "ap242"
-    ap214 = "ap214"
 
 
 class Planes(StrEnum):
@@ -84,14 +56,13 @@ Airfoils = Annotated[
         "file if not given.",
     ),
 ]
-Element = Annotated[str, typer.Option(metavar="LENGTH", help="Of a shell's elements (inp).")]
-Laminates = Annotated[bool, typer.Option("--laminates", help="Shells layer by layer (Abaqus).")]
 Formats = Annotated[
     list[str] | None,
     typer.Option(
         "--format",
         help="CAD: step iges brep curves.step structure.step; triangles: stl regions.stl glb ply "
-        "obj 3mf vtp; grids: p3d fmt cgns vtu; shells: inp; definitions: yaml (windIO 2) dat "
+        "obj 3mf vtp; grids: p3d fmt cgns vtu; volumes: volume.cgns volume.p3d volume.fmt "
+        "volume.foam.zip; shells: inp; definitions: yaml (windIO 2) dat "
         "(OpenFAST) htc (HAWC2) csv xlsx; sections.csv; png. Several with commas, or repeated.",
     ),
 ]
@@ -104,10 +75,6 @@ Mirror = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-SIDE = "Cell at that edge over the side's length, about the chord."
-SPAN = "Cell at that end over the length."
-_spacing = partial(typer.Option, rich_help_panel=GRIDS)
-_coupled = partial(_spacing, show_default="as high as those beyond the block's edge")
 Polars = Annotated[
     str | None,
     typer.Option(
@@ -188,101 +155,7 @@ class Making:
         return made
 
 
-@dataclass(frozen=True)
-class Producing:
-    """How a blade becomes files."""
-
-    tolerance: Annotated[
-        str | None,
-        typer.Option(metavar="LENGTH", help="Largest deviation of the solid; 0.3mm if not given."),
-    ] = None
-    light: Annotated[bool, typer.Option("--light", help="Solids within 1 mm, under 2 MB.")] = False
-    split: Annotated[
-        bool,
-        typer.Option(
-            "--split", help="Solids' sides in pieces: volumes in FreeCAD are right to 1e-5."
-        ),
-    ] = False
-    stations: Annotated[int, typer.Option(help="Sections of the meshes.")] = 300
-    tip: Annotated[TipKind, typer.Option(case_sensitive=False, help="A flat or a rounded tip.")] = (
-        TipKind.flat
-    )
-    unit: Annotated[
-        Unit,
-        typer.Option(
-            case_sensitive=False, help="Unit of STL, PLY, OBJ, VTP, PLOT3D and VTU files."
-        ),
-    ] = Unit.m
-    step: Annotated[
-        StepSchema, typer.Option(case_sensitive=False, help="Schema of STEP files.")
-    ] = StepSchema.ap242
-    author: Annotated[
-        str, typer.Option(metavar="NAME", help="Whom STEP and IGES files name; nobody by default.")
-    ] = ""
-    organisation: Annotated[
-        str, typer.Option(metavar="NAME", help="The author's, in the same files.")
-    ] = ""
-    grid_around: Annotated[
-        int, typer.Option(help="Points around a section, odd.", rich_help_panel=GRIDS)
-    ] = 289
-    grid_along: Annotated[
-        int, typer.Option(help="Points from root to tip.", rich_help_panel=GRIDS)
-    ] = 165
-    grid_edge: Annotated[
-        int,
-        typer.Option(
-            help="Cells across the trailing edge and the tip, even.", rich_help_panel=GRIDS
-        ),
-    ] = 72
-    le_spacing: Annotated[float, _spacing(help=SIDE)] = 1e-3
-    te_spacing: Annotated[float | None, _coupled(help=SIDE)] = None
-    tip_spacing: Annotated[float | None, _coupled(help=SPAN)] = None
-    root_spacing: Annotated[float, _spacing(help=SPAN)] = 0.008
-    element: Element = "1m"
-    laminates: Laminates = False
-    polars: Polars = None
-    reynolds: Reynolds = None
-
-    def options(self) -> Any:
-        """Return how products are made."""
-        from bladegen.cli.options.parsing import metres
-        from bladegen.exports.options import Options
-        from bladegen.surface.grids.grid import Spacing
-        from bladegen.surface.tips import TIPS
-
-        if self.light and self.tolerance is not None:
-            raise BladegenError(
-                f"--tolerance: got {self.tolerance}, but --light takes {LIGHT}; leave one out"
-            )
-        tolerance = LIGHT if self.light else self.tolerance or TOLERANCE
-        return Options(
-            tolerance=metres(tolerance, "tolerance"),
-            largest=LIGHT_BYTES if self.light else None,
-            command=COMMAND.get(),
-            step_schema=self.step,
-            author=self.author,
-            organisation=self.organisation,
-            split=self.split,
-            stations=self.stations,
-            tip=TIPS[self.tip],
-            unit=self.unit,
-            element=metres(self.element, "element", example="1m"),
-            laminates=self.laminates,
-            polars=self.polars,
-            reynolds=self.reynolds,
-            spacing=Spacing(
-                around=self.grid_around,
-                along=self.grid_along,
-                edge=self.grid_edge,
-                leading_edge=self.le_spacing,
-                trailing_edge=self.te_spacing,
-                tip=self.tip_spacing,
-                root=self.root_spacing,
-            ),
-        )
-
-
-MAKING, PRODUCING = Making(), Producing()
+MAKING = Making()
 
 
 def suffixes_of(formats: list[str] | None) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ from bladegen.views.plots.grid_plot import grid
 from bladegen.views.plots.layup_plot import layup
 from bladegen.views.plots.path_plot import path
 from bladegen.views.plots.style import BASELINE, INK, VARIANT
+from bladegen.views.plots.volume_plot import volume
 
 __all__ = ["PLOTS", "Plot", "drawable", "overview"]
 
@@ -188,6 +189,7 @@ PLOTS = {
     "layup": Plot("layers and webs over the span and on sections", layup),
     "combs": Plot("curvature combs of the airfoils, as given and as faired", combs.drawing),
     "grid": Plot("the structured grid's cells at flat and round tips, by scaled Jacobian", grid),
+    "volume": Plot("a cut through the volume around the blade, by scaled Jacobian", volume),
 }
 
 

@@ -45,6 +45,7 @@ def test_what_is_found_is_better_within_all_limits_and_not_odd(wish):
     assert wish.progress[0] == found.evaluations
 
 
+@pytest.mark.nightly
 def test_gradients_are_those_of_differences(wish):
     run, t, step = _Run.of(wish), np.array(STATE.t), 1e-5
     for figure in (run.ratio, run.area):

@@ -56,6 +56,17 @@ def test_variants_that_are_not_sound_are_told_of(tmp_path):
     assert "note: 5 variants are not sound" in result.output
 
 
+def test_variants_are_drawn_until_they_fulfil_conditions(tmp_path):
+    where = "volume > 480 and t1 < 0.05"
+    result = run("-o", tmp_path / "f", *FEW, "--reach", "0.5", "--where", where)
+    assert result.exit_code == 0, result.output
+    assert "5 of 5" in result.output
+    manifest = read_manifest(FamilyFolder(tmp_path / "f"), ("volume_m3", "t1", "attempts"))
+    assert manifest["volume_m3"].min() > 480
+    assert manifest["t1"].max() < 0.05
+    assert manifest["attempts"].max() > 1
+
+
 def test_without_a_renderer_the_sheet_has_no_pictures(tmp_path, monkeypatch):
     def nothing(*_, **__):
         raise RenderError("nothing to render with")
@@ -75,6 +86,8 @@ def test_without_a_renderer_the_sheet_has_no_pictures(tmp_path, monkeypatch):
         (("--format", "doc"), "suffix"),
         (("--table", "none.csv"), "leave --count"),
         (("--space", "none"), "nothing varies"),
+        (("--where", "volume >"), "where: got 'volume >', must be NAME"),
+        (("--where", "mass < 3"), "where: 'mass' is not known while variants are drawn, but t1,"),
         (("--dask", "tcp://127.0.0.1:9"), "no scheduler answers"),
     ],
 )

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
 from bladegen.blade.variants.designs import tabulated
+from bladegen.curves import polygons
 from bladegen.errors import BladegenError, FamilyError
 
 SPACE = bg.ShapeSpace.bundled()
@@ -87,6 +88,30 @@ def test_tries_are_limited():
     block = family.block(np.arange(2))
     assert not block.valid.any()
     assert_array_equal(block.attempts, 3)
+
+
+def test_variants_are_drawn_until_they_fulfil_conditions():
+    """The same draws as without, of which those are left out that do not fulfil them."""
+    asked = {"count": 12, "seed": 7, "spans": 30, "reach": 0.4, "bounds": {"twist": (-0.05, 0.05)}}
+    free = bg.family(blade(), SPACE, **asked).block(np.arange(12))
+    volume = np.array([polygons.volume_and_area(one)[0] for one in free.batch.sections])
+    middle = float(np.median(volume))
+    where = f"volume > {middle:.6f} and twist_change < 0"
+    block = bg.family(blade(), SPACE, **asked, where=where).block(np.arange(12))
+    assert block.valid.all()
+    assert np.all(block.values[:, -1] < 0.0)
+    made = np.array([polygons.volume_and_area(one)[0] for one in block.batch.sections])
+    assert np.all(made > middle)
+    held = (volume > middle) & (free.values[:, -1] < 0.0)
+    assert 0 < held.sum() < 12
+    assert_array_equal(block.values[held], free.values[held])
+    assert np.all(block.attempts[~held] > free.attempts[~held])
+    never = bg.family(blade(), SPACE, **asked, where="twist_change < -9", tries=5)
+    block = never.block(np.arange(12))
+    assert not block.valid.any()
+    assert_array_equal(block.attempts, 5)
+    assert "does not fulfil twist_change < -9" in block.reasons
+    assert never.table()["valid"].to_pylist() == [False] * 12
 
 
 def test_thin_and_outlying_variants_say_so():

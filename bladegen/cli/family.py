@@ -99,6 +99,14 @@ def family(
         str, typer.Option(help="'redraw' variants that are not sound, or 'keep' and mark them.")
     ] = "redraw",
     tries: Annotated[int, typer.Option(help="Draws of one variant at most.")] = 1000,
+    where: Annotated[
+        str,
+        typer.Option(
+            metavar="CONDITIONS",
+            help="Draw variants that fulfil them: 'volume > 610 and t1 < 0.1'; names of factors, "
+            "volume, surface.",
+        ),
+    ] = "",
     double: Annotated[
         bool, typer.Option("--double", help="Store sections as float64, not float32.")
     ] = False,
@@ -155,6 +163,7 @@ def family(
         spans=spans,
         invalid=invalid,
         tries=tries,
+        where=where,
     )
     order = Order(
         planned,

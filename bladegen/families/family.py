@@ -34,7 +34,6 @@ from bladegen.support.values import state_of
 __all__ = ["BLOCK", "POLICIES", "Family", "family"]
 
 BLOCK = 64  # variants made at once; what a run may lose
-AHEAD = 16  # draws of a variant looked at together, for the first that keeps to the data
 TRIES = 1000  # draws of one variant before it is kept and marked
 SPANS = 100
 POLICIES = ("redraw", "keep")
@@ -66,6 +65,8 @@ class Family:
         What a change of shape does with the chord line, as for `Blade.perturbed`.
     allow_extrapolation, allow_odd : bool
         Whether sections may leave the space's data, and be odd.
+    where : str
+        Conditions that variants fulfil: see `family`.
     """
 
     blade: Blade
@@ -79,6 +80,7 @@ class Family:
     chord_line: str = KEPT
     allow_extrapolation: bool = False
     allow_odd: bool = False
+    where: str = ""
 
     def __post_init__(self) -> None:
         must = "a Blade; bladegen.Blade.from_definition(bladegen.read('iea15mw')) makes one"
@@ -92,6 +94,7 @@ class Family:
             must = "a ShapeSpace, such as bladegen.ShapeSpace.bundled()"
             instance(self.space, ShapeSpace, "space", must, FamilyError)
             object.__setattr__(self, "space", self.space.at(self.blade.u))
+        _ = self._rules  # refuses conditions that cannot be
 
     def __repr__(self) -> str:
         return (
@@ -119,7 +122,7 @@ class Family:
     @cached_property
     def _rules(self) -> Rules:
         what, extrapolation = self.design.what, self.allow_extrapolation
-        return Rules(self._sections, what, self.thinnest, extrapolation, self.allow_odd)
+        return Rules(self._sections, what, self.thinnest, extrapolation, self.allow_odd, self.where)
 
     def block(self, index: Indices, *, dtype: type = np.float64, measured: bool = False) -> Block:
         """Make the sections of some variants, drawn again where they are not sound.
@@ -143,7 +146,10 @@ class Family:
                 self.blade
             )
         batch = self._sections.evaluate(*self._rules.split(values), **made)
-        refused = self._rules.reasons(values, batch.faults, batch.relative_thickness, batch.looks)
+        rules = self._rules
+        refused = rules.reasons(values, batch.faults, batch.relative_thickness, batch.looks)
+        unwanted = rules.unwanted(values, batch.sections)
+        refused = [one or other for one, other in zip(refused, unwanted, strict=True)]
         values, attempts, reasons = self._redrawn(index, values, refused)
         again = np.flatnonzero(attempts > 1)
         if again.size:
@@ -201,25 +207,9 @@ class Family:
         self, index: Indices, values: Array, reasons: list[str]
     ) -> tuple[Array, Indices, list[str]]:
         """Draw again what is not sound; return values, numbers of draws and what is left."""
-        values, reasons = values.copy(), list(reasons)
-        attempts = np.ones(len(index), dtype=np.int64)
-        if not self._redraws:
-            return values, attempts, reasons
-        again = np.flatnonzero([bool(reason) for reason in reasons])
-        while again.size:
-            ahead = np.minimum(attempts[again, None] + np.arange(AHEAD), self.tries - 1)
-            drawn = self.design.redrawn(np.repeat(index[again], AHEAD), ahead.ravel())
-            near = ~self._rules.strayed(drawn).reshape(ahead.shape)
-            at = np.where(near.any(axis=1), np.argmax(near, axis=1), AHEAD - 1)
-            rows = np.arange(len(again))
-            values[again] = drawn.reshape(*ahead.shape, -1)[rows, at]
-            attempts[again] = ahead[rows, at] + 1
-            some = near[rows, at] | (attempts[again] >= self.tries)
-            tested = self._rules.tested(values[again[some]])
-            for row, reason in zip(again[some], tested, strict=True):
-                reasons[row] = reason
-            again = again[[bool(reasons[row]) and attempts[row] < self.tries for row in again]]
-        return values, attempts, reasons
+        if self._redraws:
+            return self._rules.redrawn(self.design, self.tries, index, values, reasons)
+        return values.copy(), np.ones(len(index), dtype=np.int64), list(reasons)
 
 
 def family(
@@ -238,6 +228,7 @@ def family(
     chord_line: str = KEPT,
     allow_extrapolation: bool = False,
     allow_odd: bool = False,
+    where: str = "",
 ) -> Family:
     """Plan a family of perturbed blades; iterate over it for the blades.
 
@@ -268,6 +259,9 @@ def family(
         "kept" where the baseline has it, or as in the "paper": see `Blade.perturbed`.
     allow_extrapolation, allow_odd : bool
         Take variants whose sections leave the space's data, or are odd: see `Blade.perturbed`.
+    where : str
+        Take variants that fulfil conditions only: "volume > 610 and twist_change < 1".  They may
+        name what varies (degrees; changes as datasets have them), volume [m3] and surface [m2].
 
     Raises
     ------
@@ -297,4 +291,5 @@ def family(
         chord_line=chord_line,
         allow_extrapolation=allow_extrapolation,
         allow_odd=allow_odd,
+        where=where,
     )

@@ -51,6 +51,7 @@ def identity(family: Family) -> dict[str, Any]:
         "invalid": family.invalid,
         "tries": family.tries,
         "thinnest": family.thinnest,
+        **({"where": family.where} if family.where else {}),
     }
 
 

@@ -7,11 +7,19 @@ import numpy as np
 
 from bladegen.blade.changes.deformation import AffineChange
 from bladegen.blade.variants.batch import SectionBatch
+from bladegen.blade.variants.designs import Design
 from bladegen.blade.variants.factors import Factors
 from bladegen.blade.variants.verdicts import leaving, strayed, unsound
+from bladegen.curves import polygons
+from bladegen.errors import FamilyError
+from bladegen.families.conditions import called, factor_numbers, matching, named
+from bladegen.support.arguments import suggestion
 from bladegen.support.arrays import Array, Indices, Mask
 
 __all__ = ["Rules"]
+
+AHEAD = 16  # draws of a variant looked at together, for the first that keeps to the data
+MEASURED = ("volume", "surface")  # of sections, that conditions may name
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +36,8 @@ class Rules:
         Least relative thickness of a sound section.
     allow_extrapolation, allow_odd : bool
         Whether sections may leave the space's data, and be odd.
+    where : str
+        Conditions on factors, volume and surface; none if empty.
     """
 
     sections: SectionBatch
@@ -35,6 +45,17 @@ class Rules:
     thinnest: float
     allow_extrapolation: bool
     allow_odd: bool
+    where: str = ""
+
+    def __post_init__(self) -> None:
+        if self.where:
+            known = [*map(called, self.what.names), *MEASURED]
+            for name in named(self.where):
+                if name not in known:
+                    raise FamilyError(
+                        f"where: {name!r} is not known while variants are drawn, but "
+                        f"{', '.join(known)}{suggestion(name, known)}"
+                    )
 
     def split(self, values: Array) -> tuple[Array, AffineChange]:
         """Return coordinates and affine parameters of variants (b, d)."""
@@ -48,7 +69,47 @@ class Rules:
             tested = self.sections.tested(*self.split(values[near]))
             for row, reason in zip(near, self.reasons(values[near], *tested), strict=True):
                 reasons[row] = reason
+        sound = np.flatnonzero([not reason for reason in reasons])
+        if self.where and sound.size:
+            made = None
+            if set(MEASURED) & set(named(self.where)):
+                made = self.sections.evaluate(*self.split(values[sound]), tested=False).sections
+            for row, reason in zip(sound, self.unwanted(values[sound], made), strict=True):
+                reasons[row] = reason
         return reasons
+
+    def unwanted(self, values: Array, sections: Array | None) -> list[str]:
+        """Say which variants (b, d), with sections (b, k, n, 3), do not fulfil the conditions."""
+        if not self.where:
+            return [""] * len(values)
+        known = factor_numbers(self.what.names, values)
+        if sections is not None and set(MEASURED) & set(named(self.where)):
+            each = [polygons.volume_and_area(one.astype(np.float64)) for one in sections]
+            known |= dict(zip(MEASURED, np.reshape(each, (-1, 2)).T, strict=True))
+        held = matching(known, self.where).tolist()
+        return ["" if fulfilled else f"does not fulfil {self.where}" for fulfilled in held]
+
+    def redrawn(
+        self, design: Design, tries: int, index: Indices, values: Array, reasons: list[str]
+    ) -> tuple[Array, Indices, list[str]]:
+        """Draw again what is not sound; return values, numbers of draws and what is left."""
+        values, reasons = values.copy(), list(reasons)
+        attempts = np.ones(len(index), dtype=np.int64)
+        again = np.flatnonzero([bool(reason) for reason in reasons])
+        while again.size:
+            ahead = np.minimum(attempts[again, None] + np.arange(AHEAD), tries - 1)
+            drawn = design.redrawn(np.repeat(index[again], AHEAD), ahead.ravel())
+            near = ~self.strayed(drawn).reshape(ahead.shape)
+            at = np.where(near.any(axis=1), np.argmax(near, axis=1), AHEAD - 1)
+            rows = np.arange(len(again))
+            values[again] = drawn.reshape(*ahead.shape, -1)[rows, at]
+            attempts[again] = ahead[rows, at] + 1
+            some = near[rows, at] | (attempts[again] >= tries)
+            tested = self.tested(values[again[some]])
+            for row, reason in zip(again[some], tested, strict=True):
+                reasons[row] = reason
+            again = again[[bool(reasons[row]) and attempts[row] < tries for row in again]]
+        return values, attempts, reasons
 
     def left(self, values: Array) -> Mask:
         """Tell which variants (b, d) have a section that leaves the space's data, (b,)."""

@@ -16,9 +16,9 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import FamilyError, MissingLibraryError, PlaceError
+from bladegen.families.conditions import matching, numbers
 from bladegen.families.dataset.graphs import edges, surface, triangles
 from bladegen.families.dataset.replanning import planned_again
-from bladegen.families.dataset.selecting import matching, numbers
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
 from bladegen.families.dataset.store import column_values, opened
 from bladegen.families.dataset.variables import parameter, variables

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bladegen.curves import polygons
+from bladegen.families.conditions import called
 from bladegen.families.labels.figures import FIGURES
 from bladegen.measures.spanwise import UNITS
 
 __all__ = ["COORDINATES", "Variable", "parameter", "variables"]
 
-CHANGES = ("thickness", "camber", "chord", "twist")
 COORDINATES = ("variant", "name", "eta", "u")  # beside those of dimensions
 ONE = "1"
 MEANING = {
@@ -103,9 +103,9 @@ def parameter(factor: str) -> Variable:
     """Return the variable of a factor of the design."""
     dims = ("variant",)
     if factor == "twist":
-        return Variable("twist_change", "twist_deg", dims, "change of twist", "degree")
-    if factor in CHANGES:
-        return Variable(f"{factor}_change", factor, dims, f"factor of {factor}", ONE)
+        return Variable(called(factor), "twist_deg", dims, "change of twist", "degree")
+    if called(factor) != factor:
+        return Variable(called(factor), factor, dims, f"factor of {factor}", ONE)
     if factor.startswith("t") and factor[1:].isdigit():
         said = f"normal coordinate along principal geodesic {factor[1:]}"
         return Variable(factor, factor, dims, said, "radian")

@@ -14,8 +14,9 @@ from bladegen.errors import FamilyError
 from bladegen.support.arguments import suggestion
 from bladegen.support.arrays import Array, Mask
 
-__all__ = ["matching", "numbers"]
+__all__ = ["called", "factor_numbers", "matching", "named", "numbers"]
 
+CHANGES = ("thickness", "camber", "chord", "twist")
 OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
     "<": operator.lt,
     "<=": operator.le,
@@ -26,6 +27,17 @@ OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
 }
 CONDITION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_]*)\s*(<=|>=|==|!=|<|>)\s*(\S+)\s*")
 AND = re.compile(r"\s+and\s+|\s*&&?\s*|\s*,\s*")
+
+
+def called(factor: str) -> str:
+    """Return the name that conditions and datasets have for a factor of a design."""
+    return f"{factor}_change" if factor in CHANGES else factor
+
+
+def factor_numbers(names: tuple[str, ...], values: Array) -> dict[str, Array]:
+    """Return values (b, d) of factors, as datasets have them: twist in degrees; by their names."""
+    columns = dict(zip(names, values.T, strict=True))
+    return {called(k): np.degrees(v) if k == "twist" else v for k, v in columns.items()}
 
 
 def numbers(table: Any, columns: dict[str, str]) -> dict[str, Array]:
@@ -57,6 +69,31 @@ def matching(values: dict[str, Array], text: str) -> Mask:
         If it is no condition, or names something else.
     """
     held: Mask | None = None
+    for name, compared, number in _parsed(text):
+        if name not in values:
+            raise FamilyError(
+                f"where: there is no {name!r} of a variant, but {', '.join(values)}"
+                f"{suggestion(name, values)}"
+            )
+        fulfilled = np.asarray(OPERATORS[compared](values[name], number), dtype=bool)
+        held = fulfilled if held is None else held & fulfilled
+    return np.asarray(held)
+
+
+def named(text: str) -> tuple[str, ...]:
+    """Return the names in conditions.
+
+    Raises
+    ------
+    FamilyError
+        If it is no condition.
+    """
+    return tuple(name for name, _, _ in _parsed(text))
+
+
+def _parsed(text: str) -> list[tuple[str, str, float]]:
+    """Return names, operators and numbers of conditions."""
+    found = []
     for part in AND.split(text.strip()):
         match = CONDITION.fullmatch(part)
         number = None if match is None else _number(match[3])
@@ -65,15 +102,8 @@ def matching(values: dict[str, Array], text: str) -> Mask:
                 f"where: got {part!r}, must be NAME, one of {' '.join(OPERATORS)}, and a number, "
                 "such as 'volume > 600 and valid == true'"
             )
-        name = match[1]
-        if name not in values:
-            raise FamilyError(
-                f"where: there is no {name!r} of a variant, but {', '.join(values)}"
-                f"{suggestion(name, values)}"
-            )
-        fulfilled = np.asarray(OPERATORS[match[2]](values[name], number), dtype=bool)
-        held = fulfilled if held is None else held & fulfilled
-    return np.asarray(held)
+        found.append((match[1], match[2], number))
+    return found
 
 
 def _number(word: str) -> float | None:

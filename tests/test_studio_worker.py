@@ -18,7 +18,7 @@ from bladegen.measures import checks
 from bladegen.studio.choices.delivery import Delivery
 from bladegen.studio.process import Worker
 from bladegen.studio.state import State
-from bladegen.studio.worker import Job, formats, grouped, load, make
+from bladegen.studio.worker import GROUPS, Job, formats, grouped, load, make
 
 LONG = 600.0  # s; far more than is needed, for machines that are busy
 STUDIO = """
@@ -42,6 +42,7 @@ def test_each_format_is_offered_once_and_solids_first():
 
 
 def test_formats_stand_in_groups_of_what_they_are_for():
+    assert set(GROUPS) == set(Kind)
     found = grouped()
     assert list(found)[:3] == ["CAD", "Meshes", "CFD grids"]
     assert {suffix for rows in found.values() for suffix in rows} == set(formats())

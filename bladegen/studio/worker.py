@@ -26,6 +26,7 @@ GROUPS = {
     Kind.structure: "CAD",
     Kind.triangles: "Meshes",
     Kind.grid: "CFD grids",
+    Kind.volume: "CFD grids",
     Kind.definition: "Aeroelastic and structural tools",
     Kind.shell: "Aeroelastic and structural tools",
     Kind.table: "Data",

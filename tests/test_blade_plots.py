@@ -6,7 +6,8 @@ import bladegen as bg
 from bladegen.cli.view import What
 from bladegen.errors import ExportError
 from bladegen.shapes import grassmann
-from bladegen.views.plots import blade_plots, layup_plot, path_plot
+from bladegen.surface.grids.grid import Spacing
+from bladegen.views.plots import blade_plots, layup_plot, path_plot, volume_plot
 
 
 @pytest.fixture(scope="module")
@@ -105,9 +106,11 @@ def test_the_command_line_knows_all_plots_and_no_more():
 
 
 @pytest.mark.parametrize("name", blade_plots.PLOTS)
-def test_figures_name_the_blade_and_touch_no_global_state(name, blade, variant):
+def test_figures_name_the_blade_and_touch_no_global_state(name, blade, variant, monkeypatch):
     from matplotlib import pyplot
 
+    few_points = Spacing(around=65, along=21, edge=8)
+    monkeypatch.setattr(volume_plot, "SPACING", few_points)
     before = pyplot.get_fignums()
     drawn = blade_plots.PLOTS[name].draw(variant, blade)
     assert "NREL 5 MW, perturbed: changed" in drawn.get_suptitle()

@@ -15,7 +15,7 @@ from bladegen.views.plots.style import INK, SEQUENTIAL
 
 __all__ = ["volume"]
 
-SPACING = Spacing(around=97, along=41, edge=16)
+SPACING = Spacing(around=129, along=81, edge=16)
 GROWN = Extrusion(first_height=1e-4)
 STATION = 0.7  # of the span: where it is cut
 CLOSE = 0.9, 0.03  # half a picture's width, of the chord

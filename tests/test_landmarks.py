@@ -182,3 +182,17 @@ def test_a_contour_that_turns_back_on_itself_has_landmarks():
     points = lm.Contour(spline, spline.x[1]).landmarks(lm.landmark_parameters(41))
     assert_allclose(points[20], [0.99, 0.0], atol=1e-12)
     assert np.isfinite(points).all()
+
+
+def test_a_ripple_beside_the_farthest_point_does_not_hide_it():
+    """Sections of meshes have points in pairs, between which distances fall a little."""
+    from scipy.interpolate import PPoly
+
+    start, dip, top = 0.2, 0.27, 0.55  # of a distance whose slope is -(t - dip)(t - top)
+    a, b, c = -1.0 / 3.0, (dip + top) / 2.0 - start, -(start - dip) * (start - top)
+    distance = np.array([a, b, c, 1.0])
+    low = np.array([0.0, 0.0, 0.0, 0.5])
+    rows = np.stack([low, distance], axis=1)
+    spline = PPoly(np.stack([rows, 0.0 * rows], axis=-1), [0.0, 1.0, 2.0])
+    assert spline(1.0, 1)[0] < 0.0 < spline(1.25)[0] - spline(1.0)[0]
+    assert_allclose(lm._farthest(spline, np.zeros(2)), 1.0 + top - start, atol=1e-12)

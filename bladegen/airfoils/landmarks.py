@@ -46,6 +46,7 @@ BLUNT_BASE = 0.02  # chords; corners nearer than this to the trailing edge end t
 LEANING = 0.5  # of a base's height: farther along the chord it is a side, not a base
 BLUNT_MINIMUM = 1e-3  # chords; a base lower than this is rounding, not a flatback
 SETTLED = 1e-9  # chords; a step below that leaves its square
+NEARER = 33  # places about the farthest point of a contour's points and quarters between
 REMEMBERED = 512  # contours, and sets of landmarks; some 20 MB
 
 
@@ -293,6 +294,10 @@ def _farthest(spline: "PPoly", middle: Array) -> float:
             total += (((a * h + b) * h + c) * h + d - edge) * ((3.0 * a * h + 2.0 * b) * h + c)
         return total
 
+    if not slope(low) > 0 > slope(high):  # points in pairs make ripples of a spline
+        near = np.linspace(low, high, NEARER)
+        best = int(np.argmax(np.sum((spline(near) - middle) ** 2, axis=1)))
+        low, high = near[max(best - 1, 0)], near[min(best + 1, NEARER - 1)]
     if not slope(low) > 0 > slope(high):
         raise GeometryError("airfoil has no leading edge: its farthest point is a corner or an end")
     return float(brentq(slope, low, high, xtol=1e-14))

@@ -326,3 +326,50 @@ def test_parameters_of_a_variant_are_found_with_their_covariance(dtu):
         parameters_of(points[:20], model)
     with pytest.raises(BladegenError, match="must be a BladeDefinition"):
         model_like("iea15mw")
+
+
+def test_leading_edges_pass_from_nose_to_nose_without_a_jump():
+    """Two ends of a blunt nose change places half way; chord lines must not turn at once."""
+    from bladegen.airfoils.landmarks import landmark_parameters
+    from bladegen.fitting.measuring import LANDMARKS, Sections
+    from bladegen.fitting.noses import with_steady_noses
+
+    eta = np.linspace(0.0, 1.0, 81)
+    airfoils, twists = [], []
+    for tilt in 0.01 * (eta - 0.5):  # of a nose that is flat, 30 % of the chord high
+        phi = np.linspace(-0.15, 0.15, 61)
+        x = phi / 0.15
+        far = 0.995 + 0.0006 * (1.0 - np.cos(4.0 * x)) + tilt * phi - 0.004 * x**8
+        psi = np.concatenate([np.linspace(-1.2, -0.16, 50), phi, np.linspace(0.16, 1.2, 50)])
+        edge = np.interp(np.abs(psi[:50]), [0.16, 1.2], [0.985, 0.05])
+        r = np.concatenate([edge, far, edge[::-1]])
+        points = np.stack([1.0 - r * np.cos(psi), -r * np.sin(psi)], axis=1)
+        points = np.concatenate([[[1.0, 0.01]], points, [[1.0, -0.01]]])
+        own = outlines.landmarks_of(
+            outlines.Outline(points, True), landmark_parameters(LANDMARKS), None
+        )
+        curves = SectionSplines(landmark_parameters(LANDMARKS)).fit(own[None])
+        away = curves.trailing_edge[0] - curves.leading_edge[0]
+        turn = np.arctan2(away[1], away[0])
+        c, s = np.cos(turn), np.sin(turn)
+        airfoils.append((own - curves.leading_edge[0]) @ np.array([[c, -s], [s, c]]) / curves.chord)
+        twists.append(turn)
+    zero = np.zeros(81)
+    flags = np.zeros(81, dtype=bool)
+    own = SectionSplines(landmark_parameters(LANDMARKS)).fit(np.stack(airfoils))
+    sections = Sections(
+        eta, 4.0 + zero, np.array(twists), zero + 1.0, zero, np.stack(airfoils),
+        own.relative_thickness, flags, zero, zero, flags, zero,
+    )  # fmt: skip
+
+    def turns(some):  # of the middle landmarks, by which sections are joined
+        nose = some.airfoils[:, LANDMARKS // 2]
+        return np.diff(some.twist + np.arctan2(-nose[:, 1], 1.0 - nose[:, 0]))
+
+    assert np.abs(turns(sections)).max() > 0.15
+    steady = with_steady_noses(sections, 40.0, 5e-4)
+    assert np.abs(turns(steady)).max() < 0.07
+    curves = SectionSplines(landmark_parameters(LANDMARKS)).fit(steady.airfoils)
+    assert_allclose(curves.chord, 1.0, atol=1e-6)
+    assert_allclose(steady.chord, sections.chord, atol=6e-3)  # noses are cut back, not grown
+    assert np.all(steady.chord <= sections.chord + 1e-9)

@@ -39,7 +39,7 @@ def fit(
         Path,
         typer.Argument(
             metavar="SOURCE",
-            help="A CAD file (STEP, IGES, BREP), a mesh, or points (.xyz .csv .ply).",
+            help="A CAD file (STEP, IGES, BREP), a mesh, points or sections (.xyz .csv .ply).",
         ),
     ],
     target: Annotated[
@@ -57,6 +57,13 @@ def fit(
     unit: Annotated[
         Units | None,
         typer.Option(help="Unit of the file; by default what it says, or its size suggests."),
+    ] = None,
+    length: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LENGTH",
+            help="Of the blade, for a table of sections at span fractions, such as 61.5m.",
+        ),
     ] = None,
     frame: Annotated[
         Frame,
@@ -103,6 +110,7 @@ def fit(
             like=None if like is None else read(like),
             tolerance=allowed,
             unit=unit and unit.value,
+            length=None if length is None else metres(length, "length", example="61.5m"),
             frame=frame.value,
             name=name,
             progress=progress,

@@ -48,6 +48,8 @@ class Sections:
         Where their edges are, and whether they were not seen: see `Edges`.
     shift : (k,) array
         From the axis that they were measured along to the chord line, along the plane's x [m].
+    rise : (k,) array, optional
+        From the axis to the chord line, normal to that [m]; none where the axis lies on it.
     """
 
     eta: Array
@@ -62,6 +64,7 @@ class Sections:
     width: Array
     held: Mask
     shift: Array
+    rise: Array | None = None
 
     def joined(self, other: "Sections") -> "Sections":
         """Return both sections, by span."""
@@ -70,12 +73,14 @@ class Sections:
         parts = {
             name: np.concatenate([value, getattr(other, name)])[order]
             for name, value in vars(self).items()
+            if value is not None
         }
         return Sections(**parts)
 
     def take(self, rows: Array) -> "Sections":
         """Return some of the sections."""
-        return replace(self, **{name: value[rows] for name, value in vars(self).items()})
+        parts = {name: v[rows] for name, v in vars(self).items() if v is not None}
+        return replace(self, **parts)
 
 
 def axis_of(eta: Array, prebend: Array, length: float) -> ReferenceAxis:

@@ -11,10 +11,11 @@ import numpy as np
 from bladegen.fitting.measuring import Sections
 from bladegen.support.arrays import Array
 
-__all__ = ["smoothed", "steady_twist", "with_twist"]
+__all__ = ["CLEAR", "smoothed", "steady", "with_twist"]
 
 CLEAR, VAGUE = 0.45, 0.6  # of the chord: thicker sections have no leading edge to speak of
-THICK = 0.35  # of the chord: sections from this on are smoothed together
+SHARP, BLUNT = 0.004, 0.012  # rad, by which a leading edge may lie elsewhere on its nose
+BESIDE = 0.08  # of the span, beyond vague sections, that is smoothed with them
 
 
 def smoothed(x: Array, y: Array, weight: Array | None = None) -> Array:
@@ -37,21 +38,39 @@ def smoothed(x: Array, y: Array, weight: Array | None = None) -> Array:
     return result
 
 
-def steady_twist(sections: Sections) -> Array:
-    """Return the twist (k,) of chord lines that turn steadily where sections are thick.
+def steady(sections: Sections, values: Array, vague: Array) -> Array:
+    """Return values (k,) that change steadily over span where chord lines are vague.
 
-    Nearly round sections have many points that are nearly as far from the trailing edge, so that
-    the direction of their chord line scatters.
+    Parameters
+    ----------
+    sections : Sections
+        That the values belong to.
+    values : (k,) array
+        Such as their twist.
+    vague : (k,) array
+        By what angle a leading edge may lie elsewhere on its nose [rad]: `noses.vagueness`.
+
+    Notes
+    -----
+    Nearly round sections and blunt noses have many points that are nearly as far from the trailing
+    edge, so that the direction of their chord line scatters.
     """
-    share = np.clip((sections.thickness - CLEAR) / (VAGUE - CLEAR), 0.0, 1.0)
-    share = share * share * (3.0 - 2.0 * share)
+    share = _share(sections.thickness, CLEAR, VAGUE)
+    share = np.maximum(share, _share(vague, SHARP, BLUNT))
     if not share.any():
-        return sections.twist
-    thick = sections.thickness > THICK
-    wanted = sections.twist.copy()
-    wanted[thick] = smoothed(sections.eta[thick], sections.twist[thick])
-    twist: Array = sections.twist + share * (wanted - sections.twist)
-    return twist
+        return values
+    last = sections.eta[share > 0.0].max()
+    inner = sections.eta <= last + BESIDE
+    wanted = values.copy()
+    weight = 1.0 / np.maximum(vague[inner], SHARP) ** 2
+    wanted[inner] = smoothed(sections.eta[inner], values[inner], weight)
+    return np.asarray(values + share * (wanted - values))
+
+
+def _share(values: Array, low: float, high: float) -> Array:
+    share = np.clip((values - low) / (high - low), 0.0, 1.0)
+    smooth: Array = share * share * (3.0 - 2.0 * share)
+    return smooth
 
 
 def with_twist(sections: Sections, twist: Array) -> Sections:

@@ -44,6 +44,7 @@ def definition_of(
         twist=Distribution(eta, sections.twist),
         axis=axis_of(eta, sections.prebend, length),
         section_offset_y=Distribution(eta, sections.offset),
+        section_offset_x=None if sections.rise is None else Distribution(eta, sections.rise),
         relative_thickness=Distribution(eta, sections.thickness),
         description="fitted to a surface by bladegen fit",
         source=source,

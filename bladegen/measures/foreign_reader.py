@@ -107,12 +107,13 @@ def _surface(path: Path) -> Answer:
 
     shape = _loaded(path)
     if path.suffix.lower() in SOLIDS:
-        arrays, lost = face_patches.faces(shapes.bodies(shape)[0])
-        return Answer({"metres": 1.0, "lost": lost}, arrays)
+        bodies, sheets = shapes.bodies(shape)
+        arrays, lost = face_patches.faces(bodies)
+        return Answer({"metres": 1.0, "lost": lost, "sheets": sheets}, arrays)
     own = METRES.get(str(shape.units)) if path.suffix.lower() == ".3mf" else None
     metres = 1.0 if path.suffix.lower() == ".glb" else own
     arrays = {"vertices": np.asarray(shape.vertices), "faces": np.asarray(shape.faces)}
-    return Answer({"metres": metres, "lost": 0}, arrays)
+    return Answer({"metres": metres, "lost": 0, "sheets": 0}, arrays)
 
 
 def _points(path: Path) -> Answer:

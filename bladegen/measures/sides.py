@@ -17,7 +17,10 @@ from bladegen.surface.mesh import TriangleMesh
 from bladegen.surface.mesh_files import FARTHEST
 from bladegen.surface.tips import Tip, flat_tip
 
-__all__ = ["Side", "surface_of"]
+__all__ = ["MILLIMETRES", "Side", "surface_of"]
+
+MILLIMETRES = 1e-3  # m
+PLACES = ("/poles", "/vertices")
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +48,12 @@ class Side:
     remarks: tuple[str, ...] = ()
 
 
-def surface_of(source: Path | Blade, tip: Tip = flat_tip) -> Side:
+def surface_of(
+    source: Path | Blade, tip: Tip = flat_tip, *, millimetres: float = MILLIMETRES
+) -> Side:
     """Return the surface of a file, or of a blade with a tip.
+
+    A CAD file's millimetres are taken to be `millimetres` [m]: some call their metres so.
 
     Raises
     ------
@@ -68,16 +75,26 @@ def surface_of(source: Path | Blade, tip: Tip = flat_tip) -> Side:
             str(source), [f"has a number of {reach:.3g} in its surface, allowed is {FARTHEST:g}"]
         )
     if foreign.kind_of(source) == "solid":
-        surface = surfaces.of_faces(answer.arrays)
+        surface = surfaces.of_faces(
+            {
+                name: values * (millimetres / MILLIMETRES) if name.endswith(PLACES) else values
+                for name, values in answer.arrays.items()
+            }
+        )
     else:
         surface = surfaces.of_mesh(TriangleMesh(answer.arrays["vertices"], answer.arrays["faces"]))
     if not surface.size > 0.0:
         raise FileError(str(source), ["has a surface that is one point"])
-    metres, lost = answer.facts["metres"], answer.facts["lost"]
+    metres, lost, sheets = (answer.facts[name] for name in ("metres", "lost", "sheets"))
+    remarks = [f"{source.name}: {lost} of its faces could not be read"] if lost else []
+    if sheets:
+        remarks.append(
+            f"{source.name}: {sheets} sheets beside its solid, such as webs, are left out"
+        )
     kind = source.suffix.lstrip(".").upper().replace("STP", "STEP").replace("IGS", "IGES")
     return Side(
         f"the {kind} file {source.name}",
         surface if metres is None else surface.scaled(metres),
         measured=metres is not None,
-        remarks=(f"{source.name}: {lost} of its faces could not be read",) if lost else (),
+        remarks=tuple(remarks),
     )

@@ -5,16 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from bladegen.errors import FileError
+from bladegen.fitting.tables.reading import table_of
 from bladegen.measures import foreign
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh_files import FARTHEST
 
-__all__ = ["TEXTS", "is_cloud", "points_of"]
+__all__ = ["TEXTS", "is_cloud", "points_of", "sound"]
 
 TEXTS = (".xyz", ".csv", ".txt", ".pts")
-LARGEST = 2 * 10**9  # bytes of a file
-HEADER = 20  # lines at most that are no numbers, before the points
-MARKS = (",", ";", "\t", None)  # between numbers; None is any blank
 
 
 def is_cloud(path: Path) -> bool:
@@ -36,43 +34,18 @@ def points_of(path: Path) -> Array:
     FileError
         If there are none, or a coordinate is no number.
     """
-    points = _text(path) if path.suffix.lower() in TEXTS else _ply(path)
+    points = table_of(path).points if path.suffix.lower() in TEXTS else _ply(path)
+    return sound(points, str(path))
+
+
+def sound(points: Array, name: str) -> Array:
+    """Return points (m, 3) of a file, or raise a `FileError` if one is no place near it."""
     if not np.isfinite(points).all() or np.abs(points).max(initial=0.0) > FARTHEST:
         raise FileError(
-            str(path), [f"has points that are no numbers, or farther away than {FARTHEST:g}"]
+            name, [f"has points that are no numbers, or farther away than {FARTHEST:g}"]
         )
     return points
 
 
 def _ply(path: Path) -> Array:
     return np.asarray(foreign.ask("points", path).arrays["points"], dtype=np.float64)
-
-
-def _text(path: Path) -> Array:
-    if not path.is_file():
-        raise FileError(str(path), ["is no file"])
-    if path.stat().st_size > LARGEST:
-        raise FileError(str(path), [f"has {path.stat().st_size} bytes, allowed are {LARGEST}"])
-    with path.open(encoding="utf-8", errors="replace") as stream:
-        head = [stream.readline() for _ in range(HEADER)]
-    for skipped, line in enumerate(head):
-        mark = next((m for m in MARKS if _is_row(line, m)), "")
-        if mark == "":
-            continue
-        try:
-            return np.loadtxt(
-                path, delimiter=mark, skiprows=skipped, usecols=(0, 1, 2), ndmin=2, comments="#"
-            )
-        except ValueError as error:
-            raise FileError(str(path), [f"no table of numbers: {error}"]) from None
-    raise FileError(
-        str(path), [f"no line of its first {HEADER} holds three numbers x, y, z of a point"]
-    )
-
-
-def _is_row(line: str, mark: str | None) -> bool:
-    words = line.split(mark)
-    try:
-        return len([float(word) for word in words[:3]]) == 3
-    except ValueError:
-        return False

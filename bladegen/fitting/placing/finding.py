@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import GeometryError
 from bladegen.fitting.placing.pose import Pose, cuts_across
 from bladegen.fitting.placing.root import upright
@@ -13,7 +14,7 @@ from bladegen.measures.surfaces import Surface
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh
 
-__all__ = ["FRAMES", "UNITS", "found"]
+__all__ = ["FRAMES", "SHORTEST", "UNITS", "found"]
 
 FRAMES = ("auto", "file", "blade")
 UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "ft": 0.3048}
@@ -25,6 +26,7 @@ ALIGNED = np.radians(0.3)  # between the pitch axis and an axis of the file
 INSIDE = 0.05  # of the root's diameter, by which an axis of the file may miss its centre
 LEAST_TURN = np.radians(30.0)  # between the chord near the tip and the file's axis of no twist
 FEW, OPENED = 5, 0.2  # points of an outline, and of its length that a gap may have
+AROUND, FOLDED = 401, 3  # points of an outline, and outlines that may cross themselves at ends
 ENOUGH = 0.5  # of the planes that must cut an outline
 
 
@@ -134,10 +136,17 @@ def _widths(pose: Pose, surface: Surface, name: str) -> Array:
         )
     least, most = _extents(cuts)
     length = float(z[-1] - z[0]) * (PLANES + 1) / (PLANES - 1)
-    if length < SLENDER * most.max():
+    wide = max(float(most.max()), float(np.ptp(pose(surface.mesh.vertices)[:, :2], axis=0).max()))
+    if length < SLENDER * wide:
         raise GeometryError(
-            f"{name}: no blade: {length:.4g} m long and {most.max():.4g} m wide, must be at least "
-            f"{SLENDER:g} times as long as wide"
+            f"{name}: no blade: {length:.4g} m long and {wide:.4g} m wide, must be at least "
+            f"{SLENDER:g} times as long as wide; leave one blade in the file"
+        )
+    folded = crossing_sections(np.stack([_resampled(cut.outline) for cut in solid]))
+    if len(folded) > FOLDED:
+        raise GeometryError(
+            f"{name}: the surface crosses itself: {len(folded)} of {len(cuts)} planes across it "
+            "cut outlines that do; repair it first"
         )
     crossing = sum(cut.crossing for cut in cuts)
     if crossing > ENOUGH * len(cuts):
@@ -146,6 +155,14 @@ def _widths(pose: Pose, surface: Surface, name: str) -> Array:
             "edges of more than two triangles; repair it first"
         )
     return least
+
+
+def _resampled(outline: Array) -> Array:
+    """Return points (AROUND, 2) of a closed outline, evenly along it."""
+    ring = np.concatenate([outline, outline[:1]])
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ring, axis=0).T))])
+    at = np.linspace(0.0, arc[-1], AROUND)
+    return np.stack([np.interp(at, arc, ring[:, k]) for k in (0, 1)], axis=-1)
 
 
 def _extents(cuts: list[Cut]) -> tuple[Array, Array]:

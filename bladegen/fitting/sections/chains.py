@@ -92,34 +92,49 @@ def outlines_of(points: Array, ends: Indices) -> Cut:
 
 def _chains(count: int, ends: Indices) -> tuple[list[list[int]], list[list[int]], bool]:
     """Return chains of segments as lists of points: the closed, and the open ones."""
-    near: list[list[int]] = [[] for _ in range(count)]
-    crossing = False
-    for a, b in ends.tolist():
-        if a == b or b in near[a]:
-            continue
-        if len(near[a]) > 1 or len(near[b]) > 1:
-            crossing = True
-            continue
-        near[a].append(b)
-        near[b].append(a)
+    one, other, crossing = _neighbours(count, ends)
     used = [False] * count
     closed: list[list[int]] = []
     open_: list[list[int]] = []
-    starts = [i for i in range(count) if len(near[i]) == 1] + list(range(count))
+    starts = [i for i in range(count) if one[i] >= 0 > other[i]] + list(range(count))
     for start in starts:
-        if used[start] or not near[start]:
+        if used[start] or one[start] < 0:
             continue
         chain, place = [start], start
         used[start] = True
         while True:
-            ahead = [other for other in near[place] if not used[other]]
-            if not ahead:
-                break
-            place = ahead[0]
+            ahead = one[place]
+            if used[ahead]:
+                ahead = other[place]
+                if ahead < 0 or used[ahead]:
+                    break
+            place = ahead
             used[place] = True
             chain.append(place)
-        (closed if len(chain) > 2 and start in near[place] else open_).append(chain)
+        round_ = len(chain) > 2 and start in (one[place], other[place])
+        (closed if round_ else open_).append(chain)
     return closed, open_, crossing
+
+
+def _neighbours(count: int, ends: Indices) -> tuple[list[int], list[int], bool]:
+    """Return up to two neighbours of each point, -1 where there is none, and whether one has more.
+
+    Of more than two the first are kept, on both sides.
+    """
+    one, other = [-1] * count, [-1] * count
+    crossing = False
+    for a, b in ends.tolist():
+        if a == b or b in (one[a], other[a]):
+            continue
+        if other[a] >= 0 or other[b] >= 0:
+            crossing = True
+            continue
+        for here, there in ((a, b), (b, a)):
+            if one[here] < 0:
+                one[here] = there
+            else:
+                other[here] = there
+    return one, other, crossing
 
 
 def _joined(chains: list[Array]) -> list[tuple[Array, float]]:

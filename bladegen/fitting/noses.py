@@ -20,6 +20,7 @@ import numpy as np
 
 from bladegen.airfoils.landmarks import contour, landmark_parameters
 from bladegen.airfoils.section_splines import SectionSplines
+from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import GeometryError
 from bladegen.fitting.measuring import LANDMARKS, Sections
 from bladegen.fitting.smoothing import with_twist
@@ -112,7 +113,8 @@ class _Nose:
     def lowered(self, psi: float, fall: float) -> Array | None:
         """Return the airfoil with its nose cut back until it is farthest at an angle.
 
-        None where that leaves another point the farthest, beside what counts as the nose.
+        None where that leaves another point the farthest, beside what counts as the nose, or the
+        airfoil crossing itself.
         """
         top = float(self.spline(psi))
         reach = abs(psi)
@@ -126,10 +128,10 @@ class _Nose:
         if not self.rows[1] < first < self.rows[-2] or abs(self.psi[first] - psi) > NEAR:
             return None
         try:
-            contour(lowered)
+            points = contour(lowered).landmarks(landmark_parameters(LANDMARKS))
         except GeometryError:
             return None
-        return lowered
+        return None if crossing_sections(points[None]) else lowered
 
 
 def _run(flags: Mask) -> int:

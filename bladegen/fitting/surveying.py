@@ -39,6 +39,7 @@ ROUNDS = 4  # of halving the steps between sections
 MOST = 480  # sections
 TURNS = 3  # of axis and planes, at last
 NOSES = 0.5  # of the tolerance, by which a nose is lowered where it would jump
+LOWEST = 1e-3  # m, of that: a coarse tolerance is no leave to cut noses off
 VAGUE = 0.1  # of the tolerance: points that are as far from the trailing edge but for this
 STILL = 0.05  # of the tolerance that the axis still moves
 
@@ -92,7 +93,7 @@ def _steadied(
     sections: Sections, length: float, tolerance: float, twist: Array | None = None
 ) -> tuple[Sections, Array]:
     """Return sections whose leading edges do not jump and whose twist is steady; and the twist."""
-    sections = with_steady_noses(sections, length, NOSES * tolerance)
+    sections = with_steady_noses(sections, length, min(NOSES * tolerance, LOWEST))
     if twist is None:
         twist = steady(sections, sections.twist, vagueness(sections, VAGUE * tolerance))
     return with_twist(sections, twist), twist

@@ -46,7 +46,6 @@ BLUNT_BASE = 0.02  # chords; corners nearer than this to the trailing edge end t
 LEANING = 0.5  # of a base's height: farther along the chord it is a side, not a base
 BLUNT_MINIMUM = 1e-3  # chords; a base lower than this is rounding, not a flatback
 SETTLED = 1e-9  # chords; a step below that leaves its square
-NEARER = 33  # places about the farthest point of a contour's points and quarters between
 REMEMBERED = 512  # contours, and sets of landmarks; some 20 MB
 
 
@@ -238,10 +237,9 @@ def _without_base(points: Array) -> tuple[Array, float]:
     upright = (suction and pressure) or base[0] < LEANING * base[1]
     if not upright or not np.hypot(*base) >= BLUNT_MINIMUM:
         return points, 0.0
-    x = points[0, 0]
     sides = points[suction : len(points) - pressure]
-    first = _prolonged(sides[0], sides[1], x)
-    last = _prolonged(sides[-1], sides[-2], x)
+    first = _prolonged(sides[0], sides[1], points[0, 0])
+    last = _prolonged(sides[-1], sides[-2], points[0, 0])
     opened = _distinct(np.concatenate([first[None], sides, last[None]]))
     return opened, float(np.hypot(*(first - last)))
 
@@ -278,11 +276,9 @@ def _farthest(spline: "PPoly", middle: Array) -> float:
     """Return the parameter of the point farthest from the trailing-edge midpoint."""
     from scipy.optimize import brentq
 
-    quarters = np.arange(4) / 4.0
-    fine = (spline.x[:-1, None] + np.diff(spline.x)[:, None] * quarters).reshape(-1)
+    fine = (spline.x[:-1, None] + np.diff(spline.x)[:, None] * np.arange(4) / 4.0).reshape(-1)
     best = int(np.argmax(np.sum((spline(fine) - middle) ** 2, axis=1)))
     low, high = fine[max(best - 1, 0)], fine[min(best + 1, len(fine) - 1)]
-
     first, last = np.clip(np.searchsorted(spline.x, (low, high)) - 1, 0, len(spline.x) - 2)
     knots = spline.x[first : last + 1].tolist()
     cubics = spline.c[:, first : last + 1].transpose(1, 2, 0).tolist()
@@ -295,9 +291,9 @@ def _farthest(spline: "PPoly", middle: Array) -> float:
         return total
 
     if not slope(low) > 0 > slope(high):  # points in pairs make ripples of a spline
-        near = np.linspace(low, high, NEARER)
-        best = int(np.argmax(np.sum((spline(near) - middle) ** 2, axis=1)))
-        low, high = near[max(best - 1, 0)], near[min(best + 1, NEARER - 1)]
+        near = np.linspace(low, high, 33)
+        best = int(np.clip(np.argmax(np.sum((spline(near) - middle) ** 2, axis=1)), 1, 31))
+        low, high = near[best - 1], near[best + 1]
     if not slope(low) > 0 > slope(high):
         raise GeometryError("airfoil has no leading edge: its farthest point is a corner or an end")
     return float(brentq(slope, low, high, xtol=1e-14))

@@ -27,7 +27,7 @@ READING = {
     "preview",
     "plot",
     "studio",
-} | {"evaluate"}
+} | {"evaluate", "label"}
 CALLS = [
     "info BLADE --json",
     "check BLADE",
@@ -100,6 +100,9 @@ def test_a_family_goes_on_with_the_same_shapes_only(run, tmp_path, monkeypatch):
     result = run(FAMILY, *folder, "--resume")
     assert result.exit_code == 0, result.output
     assert "2, 0 of them made now" in result.output
+    labelling = "label OUT/f mass --blade BLADE"
+    assert "--airfoils DIR" in str(run(labelling).exception)
+    assert "mass needs layers" in str(run(labelling, *folder).exception)
     foil = tmp_path / "shapes" / "naca.dat"
     foil.write_text(foil.read_text().replace("1.000000000", "0.999000000"))
     result = run(FAMILY, *folder, "--resume")

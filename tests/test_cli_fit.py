@@ -1,6 +1,7 @@
 """`bladegen fit` as users call it."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,8 +10,6 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.cli import commands
-from bladegen.surface import mesh_files
-from bladegen.surface.mesh import TriangleMesh
 
 RUN = CliRunner()
 
@@ -28,8 +27,12 @@ def stl(tmp_path_factory):
 
 
 def test_one_command_makes_a_definition_a_report_and_says_how_good_it_is(
-    stl, tmp_path, foreign_here
+    stl, tmp_path, foreign_here, monkeypatch
 ):
+    from bladegen.fitting import fit as module
+
+    plain, made = module.fit, []
+    monkeypatch.setattr(module, "fit", lambda *a, **k: made.append(plain(*a, **k)) or made[0])
     target = tmp_path / "blade.yaml"
     result = run("fit", stl, "-o", target, "--tolerance", "30mm", "--name", "found")
     assert result.exit_code == 0, result.output
@@ -46,17 +49,9 @@ def test_one_command_makes_a_definition_a_report_and_says_how_good_it_is(
     assert len(report["airfoils"]) == report["stations"]
     assert "command=bladegen fit unknown.stl" in target.read_text()
 
-
-def test_a_missed_tolerance_is_said_and_the_files_are_there(stl, tmp_path, monkeypatch):
-    from dataclasses import replace
-
-    from bladegen.fitting import fit as module
-
-    mesh = mesh_files.read(stl)
-    triangles = TriangleMesh(np.asarray(mesh.vertices) / 1e3, np.asarray(mesh.faces))
-    made = replace(bg.fit(triangles, tolerance=0.05, samples=50), tolerance=1e-4)
-    monkeypatch.setattr(module, "fit", lambda *_, **__: made)
-    target = tmp_path / "blade.yaml"
+    # a missed tolerance is said, and the files are there
+    monkeypatch.setattr(module, "fit", lambda *_, **__: replace(made[0], tolerance=1e-4))
+    target = tmp_path / "missed.yaml"
     result = run("fit", stl, "-o", target, "--json")
     assert result.exit_code == 1
     assert "allowed is 0.1 mm; it is worst at" in str(result.exception)

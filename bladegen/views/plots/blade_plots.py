@@ -194,8 +194,9 @@ PLOTS = {
 
 
 def drawable(blade: Blade) -> list[str]:
-    """Return the names of the plots that a blade has something for."""
-    return [name for name in PLOTS if name != "layup" or blade.layup is not None]
+    """Return the names of the plots that a blade has something for; a volume is to be asked for."""
+    missing = {"volume"} if blade.layup is not None else {"volume", "layup"}
+    return [name for name in PLOTS if name not in missing]
 
 
 def _over_span(

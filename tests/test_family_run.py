@@ -260,6 +260,7 @@ def test_runs_killed_at_any_point_leave_no_workers_and_go_on(
     assert run(Order(planned(), target), resume=True) == 0
 
 
+@pytest.mark.nightly  # by day: killed at any point, above
 def test_runs_killed_while_they_write_files_leave_no_workers_and_go_on(command, tmp_path):
     target, count = tmp_path / "killed", 6
     asked = ["--count", str(count), "--spans", str(SPANS), "--format", "glb", "--stations", "40"]

@@ -277,6 +277,14 @@ def accepted(case):
     return said, [line for line in failed if "aspect ratio" not in line]
 
 
+def exported(name, tip, path):
+    """A bundled blade's volume, of the size that docs/grids.md has figures of."""
+    blade = Blade.from_definition(read(name))
+    spacing = Spacing(around=129, along=81, edge=16)
+    extrusion = Extrusion(first_height=1e-4)
+    return bg.export(blade, path, tip=TIPS[tip], spacing=spacing, extrusion=extrusion)
+
+
 FOLDS = pytest.mark.xfail(raises=GeometryError, strict=True, reason="folds off the edge's ring")
 AT_DEFAULTS = [
     pytest.param(name, tip, marks=[FOLDS] if (name, tip) == ("iea15mw", "round") else [])
@@ -299,10 +307,7 @@ def test_three_blades_at_the_defaults(name, tip):
 @pytest.mark.parametrize("tip", TIPS)
 @pytest.mark.parametrize("name", bundled())
 def test_checkmesh_finds_no_fault_but_high_aspects(name, tip, tmp_path):
-    blade = Blade.from_definition(read(name))
-    path = tmp_path / "a.volume.foam.zip"
-    spacing = Spacing(around=129, along=81, edge=16)
-    bg.export(blade, path, tip=TIPS[tip], spacing=spacing, extrusion=Extrusion(first_height=1e-4))
+    path = exported(name, tip, tmp_path / "a.volume.foam.zip")
     with zipfile.ZipFile(path) as archive:
         archive.extractall(tmp_path / "case")
     said, failed = accepted(tmp_path / "case")
@@ -316,10 +321,7 @@ def test_checkmesh_finds_no_fault_but_high_aspects(name, tip, tmp_path):
 @pytest.mark.parametrize("tip", TIPS)
 @pytest.mark.parametrize("name", bundled())
 def test_cgnscheck_finds_nothing(name, tip, tmp_path):
-    blade = Blade.from_definition(read(name))
-    path = tmp_path / "a.volume.cgns"
-    spacing = Spacing(around=129, along=81, edge=16)
-    bg.export(blade, path, tip=TIPS[tip], spacing=spacing, extrusion=Extrusion(first_height=1e-4))
+    path = exported(name, tip, tmp_path / "a.volume.cgns")
     said = subprocess.run(["cgnscheck", path], check=True, capture_output=True, text=True).stdout
     assert "checking complete" in said
     assert "ERROR" not in said.upper().replace("ERRORS: 0", "")

@@ -1,6 +1,7 @@
 """What is wrong with variants of a family: bounds, data, faults of sections, oddities."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,11 @@ class Rules:
                         f"{', '.join(known)}{suggestion(name, known)}"
                     )
 
+    @cached_property
+    def measuring(self) -> bool:
+        """Whether conditions name what is measured on sections."""
+        return bool(self.where) and not set(MEASURED).isdisjoint(named(self.where))
+
     def split(self, values: Array) -> tuple[Array, AffineChange]:
         """Return coordinates and affine parameters of variants (b, d)."""
         return self.what.split(values, self.sections.modes)
@@ -72,7 +78,7 @@ class Rules:
         sound = np.flatnonzero([not reason for reason in reasons])
         if self.where and sound.size:
             made = None
-            if set(MEASURED) & set(named(self.where)):
+            if self.measuring:
                 made = self.sections.evaluate(*self.split(values[sound]), tested=False).sections
             for row, reason in zip(sound, self.unwanted(values[sound], made), strict=True):
                 reasons[row] = reason
@@ -83,7 +89,7 @@ class Rules:
         if not self.where:
             return [""] * len(values)
         known = factor_numbers(self.what.names, values)
-        if sections is not None and set(MEASURED) & set(named(self.where)):
+        if sections is not None and self.measuring:
             each = [polygons.volume_and_area(one.astype(np.float64)) for one in sections]
             known |= dict(zip(MEASURED, np.reshape(each, (-1, 2)).T, strict=True))
         held = matching(known, self.where).tolist()

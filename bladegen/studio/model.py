@@ -23,6 +23,7 @@ from bladegen.studio.scene import Check, Curves, Scene, flattened
 from bladegen.studio.state import State
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.files import safe_stem
+from bladegen.views.rendering.offsets import outward_normals
 
 __all__ = ["Baseline", "changes"]
 
@@ -98,7 +99,7 @@ class Baseline:
     def _rest(self) -> tuple[Array, Array]:
         """The surface without changes, and its outward normals, both (k, n, 3)."""
         sections = self._batch(State(self.key, (0.0,) * self.space.dimension)).sections[0]
-        return sections, _normals(sections)
+        return sections, outward_normals(sections)
 
     def scene(self, state: State) -> Scene:
         """Make what a page shows of a state of this blade."""
@@ -216,12 +217,3 @@ class Baseline:
         assert sections.domain is not None  # a baseline has a space
         left: Mask = sections.domain.left(sections.step(np.array([state.t])))[0]
         return left
-
-
-def _normals(sections: Array) -> Array:
-    """Return unit normals (k, n, 3) of a surface, outward; zero where it has none."""
-    around = np.gradient(sections, axis=1)
-    normal = np.cross(np.gradient(sections, axis=0), around)
-    length = np.linalg.norm(normal, axis=-1, keepdims=True)
-    unit: Array = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-    return unit

@@ -5,7 +5,9 @@ wants them: inner ones first, by owner, then by neighbour, their normals out of 
 those of each patch in one piece.  Reference: OpenFOAM's user guide, "Mesh description".
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +16,10 @@ from bladegen.support.arrays import Array, Indices
 from bladegen.support.foam import dictionary, entries, number
 from bladegen.support.values import brief
 
-__all__ = ["FAR", "PLANES", "PolyMesh", "extruded", "write_mesh"]
+__all__ = ["FAR", "PLANES", "Patch", "PolyMesh", "extruded", "write_mesh"]
 
 FAR, PLANES = "far_field", "front_and_back"
+Patch = tuple[str, str, Indices, Indices]  # its name, its type, its faces (f, 4), their owners (f,)
 DIGITS = 12  # of points: a first cell's height is 1e-8 of the far field's radius
 
 
@@ -43,6 +46,27 @@ class PolyMesh:
     patches: dict[str, tuple[str, int, int]]
 
     __repr__ = brief
+
+    @classmethod
+    def of(
+        cls, points: Array, inner: Indices, pairs: Indices, outer: Sequence[Patch]
+    ) -> "PolyMesh":
+        """Return the mesh of inner faces (i, 4) between pairs of cells (i, 2), and of patches.
+
+        The first cell of a pair is the owner, the lower number.
+        """
+        order = np.lexsort((pairs[:, 1], pairs[:, 0]))
+        patches, start = {}, len(inner)
+        for name, kind, faces, _ in outer:
+            patches[name] = (kind, start, len(faces))
+            start += len(faces)
+        return cls(
+            points,
+            np.concatenate([inner[order], *(faces for _, _, faces, _ in outer)]),
+            np.concatenate([pairs[order, 0], *(owners for _, _, _, owners in outer)]),
+            pairs[order, 1],
+            patches,
+        )
 
 
 def extruded(layers: Array, thickness: float, walls: dict[str, int]) -> PolyMesh:
@@ -81,22 +105,18 @@ def extruded(layers: Array, thickness: float, walls: dict[str, int]) -> PolyMesh
     above = np.stack([cells[:-1], cells[1:]], axis=-1)
     inner = np.concatenate([rising.reshape(-1, 4), over[1:-1].reshape(-1, 4)])
     pairs = np.concatenate([beside.reshape(-1, 2), above.reshape(-1, 2)])
-    order = np.lexsort((pairs[:, 1], pairs[:, 0]))
     ring = np.roll(low, -1, axis=1)
     bottom = np.stack([low[:-1], low[1:], ring[1:], ring[:-1]], axis=-1).reshape(-1, 4)
     top = bottom[:, ::-1] + len(flat)
-    outer = [over[0][:, ::-1], over[-1], bottom, top]
-    patches, start = {}, len(inner)
-    for name, kind, size in (
-        *((name, "wall", size) for name, size in walls.items()),
-        (FAR, "patch", n),
-        (PLANES, "empty", 2 * cells.size),
-    ):
-        patches[name] = (kind, start, size)
-        start += size
-    owner = [pairs[order, 0], cells[0], cells[-1], cells.ravel(), cells.ravel()]
-    faces = np.concatenate([inner[order], *outer])
-    return PolyMesh(points, faces, np.concatenate(owner), pairs[order, 1], patches)
+    ends = np.cumsum([0, *walls.values()])
+    outer: list[Patch] = [
+        (name, "wall", over[0][start:end, ::-1], cells[0, start:end])
+        for name, (start, end) in zip(walls, pairwise(ends.tolist()), strict=True)
+    ]
+    outer.append((FAR, "patch", over[-1], cells[-1]))
+    planes = np.concatenate([bottom, top])
+    outer.append((PLANES, "empty", planes, np.concatenate([cells.ravel(), cells.ravel()])))
+    return PolyMesh.of(points, inner, pairs, outer)
 
 
 def write_mesh(mesh: PolyMesh, folder: Path, *, group: str) -> None:

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from bladegen.exports.cases.dictionaries import BLADE
-from bladegen.exports.cases.poly_mesh import FAR, PolyMesh, write_mesh
+from bladegen.exports.cases.poly_mesh import FAR, Patch, PolyMesh, write_mesh
 from bladegen.support.arrays import Indices
 from bladegen.support.foam import Entries, dictionary
 from bladegen.surface.volumes.volume import Volume
@@ -54,13 +54,11 @@ def mesh_of(volume: Volume) -> PolyMesh:
             np.stack([cells[:-1], cells[1:]], axis=-1).reshape(-1, 2),
         ]
     )
-    order = np.lexsort((pairs[:, 1], pairs[:, 0]))
-    faces, owner, patches, start = [inner[order]], [pairs[order, 0]], {}, len(inner)
     family = np.concatenate(
         [np.full(b.eta[1:, 1:].size, i) for i, b in enumerate(volume.grid.blocks)]
     )
     names = [block.family for block in volume.grid.blocks]
-    outer = []
+    outer: list[Patch] = []
     for name in dict.fromkeys(names):
         own = np.flatnonzero(np.isin(family, [i for i, one in enumerate(names) if one == name]))
         outer.append((name.replace(" ", "_"), "wall", over[0][own][:, ::-1], own))
@@ -68,18 +66,7 @@ def mesh_of(volume: Volume) -> PolyMesh:
     corner = front.rim()
     owners = (corner // 4 + count * outward[:, 0]).ravel()
     outer.append((ROOT, "symmetryPlane", _rising(front.edges(corner), last, points), owners))
-    for name, kind, quads, owners in outer:
-        patches[name] = (kind, start, len(quads))
-        faces.append(quads)
-        owner.append(owners)
-        start += len(quads)
-    return PolyMesh(
-        volume.layers.reshape(-1, 3),
-        np.concatenate(faces),
-        np.concatenate(owner),
-        pairs[order, 1],
-        patches,
-    )
+    return PolyMesh.of(volume.layers.reshape(-1, 3), inner, pairs, outer)
 
 
 def _rising(edge: Indices, layers: int, points: int) -> Indices:

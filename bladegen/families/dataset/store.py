@@ -7,7 +7,7 @@ and written some thousands at a time.
 """
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -77,26 +77,9 @@ def complete(
     ExportError
         If the store cannot be written.
     """
-    import pyarrow.parquet as pq
-    import zarr
-
     group = opened(store, writing=True)
-    if is_complete(group):
-        return
-    try:
-        with pq.ParquetFile(manifest) as file, warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # Zarr's, that consolidated metadata may change
-            wanted = variables(file.schema_arrow.names, list(identity["factors"]))
-            _describe(group)
-            axes = _axes(group, list(identity.get("labels", ())))
-            _fill(group, file, wanted, axes, int(identity["seed"]))
-            names = [parameter(factor).name for factor in identity["factors"]]
-            group.attrs.update(
-                {**about, **_said(wanted, names, axes), "variants": file.metadata.num_rows}
-            )
-            zarr.consolidate_metadata(group.store)
-    except OSError as error:
-        raise ExportError(f"{store}: cannot be written: {error.strerror or error}") from None
+    if not is_complete(group):
+        _put(store, group, manifest, identity, only=None, about=about)
 
 
 def add_labels(
@@ -118,18 +101,35 @@ def add_labels(
     ExportError
         If the store cannot be written.
     """
+    new = {one.name for label in labels for one in FIGURES[label]}
+    _put(store, opened(store, writing=True), manifest, identity, only=new, about={})
+
+
+def _put(
+    store: Path,
+    group: Any,
+    manifest: Path,
+    identity: Mapping[str, Any],
+    *,
+    only: Collection[str] | None,
+    about: Mapping[str, Any],
+) -> None:
+    """Write variables of the manifest, all with the split or only some, and gather metadata."""
     import pyarrow.parquet as pq
     import zarr
 
-    group, new = opened(store, writing=True), {one.name for k in labels for one in FIGURES[k]}
     try:
         with pq.ParquetFile(manifest) as file, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Zarr's, that consolidated metadata may change
-            all_ = variables(file.schema_arrow.names, list(identity["factors"]))
-            axes = _axes(group, list(identity["labels"]))
-            _fill(group, file, [one for one in all_ if one.name in new], axes, None)
+            every = variables(file.schema_arrow.names, list(identity["factors"]))
+            if only is None:
+                _describe(group)
+            axes = _axes(group, list(identity.get("labels", ())))
+            wanted = [one for one in every if only is None or one.name in only]
+            _fill(group, file, wanted, axes, int(identity["seed"]) if only is None else None)
             names = [parameter(factor).name for factor in identity["factors"]]
-            group.attrs.update(_said(all_, names, axes))
+            told = {**about, **_said(every, names, axes), "variants": file.metadata.num_rows}
+            group.attrs.update(told)
             zarr.consolidate_metadata(group.store)
     except OSError as error:
         raise ExportError(f"{store}: cannot be written: {error.strerror or error}") from None

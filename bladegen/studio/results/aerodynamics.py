@@ -104,16 +104,16 @@ class Working:
             If NeuralFoil is not installed.
         """
         rotor = blade.definition.rotor
-        cone = rotor.cone or 0.0
+        cone, hub, trouble = rotor.cone or 0.0, 0.0, ""
         try:
             hub = hub_radius_of(rotor, blade.name)
         except BladegenError as error:
-            elements = elements_of(blade.sections(SPANS)[None], 0.0, cone)
-            speed = conditions_of(elements, rotor).tip_speed
-            nowhere = np.array([0.0, 1.0]), np.full(2, USUAL)
-            return cls(0.0, 0.0, 0.0, cone, speed, rotor.blades, *nowhere, str(error))
+            trouble = str(error)
         elements = elements_of(blade.sections(SPANS)[None], hub, cone)
         speed = conditions_of(elements, rotor).tip_speed
+        if trouble:
+            nowhere = np.array([0.0, 1.0]), np.full(2, USUAL)
+            return cls(0.0, 0.0, hub, cone, speed, rotor.blades, *nowhere, trouble)
         tables = _tables(elements, speed)
         best = performance(elements, tables, rotor.blades)
         ratio = rotor.design_ratio or float(best.ratio[0])

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from bladegen.definition.estimates import THICK
 from bladegen.errors import BladegenError, StudioError
 from bladegen.parametric.model import ParametricBlade
 from bladegen.studio.controls import AFFINE, controls
@@ -26,7 +27,6 @@ __all__ = ["LIMITS", "Optimum", "Wish", "bounds", "optimise"]
 MOST = 60  # evaluations; most runs need a dozen
 TOLERANCE = 1e-5  # of lift over drag, in hundreds
 SHARES = 20  # parts of the way to an optimum, of which the longest without an odd section is taken
-THICK = 0.4  # of the chord; thicker sections are none of NeuralFoil's
 SLACK = 5e-4  # of the area, to which its limit is kept
 CANCEL = "cancel"  # a file of this name in the folder ends the run
 PROGRESS = "optimum.json"

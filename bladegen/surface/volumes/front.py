@@ -6,6 +6,7 @@ names its point, the next point and the one before.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -57,13 +58,18 @@ class Front:
 
     __repr__ = brief
 
+    @cached_property
+    def _across(self) -> Indices:
+        """The corner across the edge ahead of each corner, -1 at the root's edges."""
+        return _turned(self.cells, len(self.points))[1]
+
     def sides(self) -> tuple[Indices, Indices]:
         """Return the corners (e,) at which edges between two cells begin, and these cells (e, 2).
 
         Corners are counted through all cells; the first cell is that of the corner, on the left of
         the edge seen from outside.
         """
-        over = _turned(self.cells, len(self.points))[1]
+        over = self._across
         corner = np.flatnonzero(over >= 0)
         beside = np.stack([corner // 4, over[corner] // 4], axis=-1)
         once = beside[:, 0] < beside[:, 1]
@@ -71,7 +77,7 @@ class Front:
 
     def rim(self) -> Indices:
         """Return the corners (e,) at which the root's edges begin."""
-        return np.flatnonzero(_turned(self.cells, len(self.points))[1] < 0)
+        return np.flatnonzero(self._across < 0)
 
     def edges(self, corner: Indices) -> Indices:
         """Return the points (e, 2) of edges that begin at corners (e,)."""

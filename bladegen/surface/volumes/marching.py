@@ -68,12 +68,12 @@ def layers(
         share = _share((growth**k - 1.0) / (growth - 1.0))
         along = smoothing * (WALL + share * (FAR - WALL))
         spread = smoothing * SPREAD * min(k / expected, 1.0)
-        normals, mass = _measured(front, points)
+        normals, area = _measured(front, points)
         aside = spread * _towards_middle(front, points)
         bound = STEEPEST * along  # so that what is smoothed over a length cannot fold within it
         aside /= np.sqrt(1.0 + np.sum(aside**2, axis=1) / bound**2)[:, None]
         wanted = normals + aside
-        step = solve(front, points, mass, height * wanted, along * height)
+        step = solve(front, points, area, height * wanted, along * height)
         step[front.root] -= np.outer(step[front.root] @ front.normal, front.normal)
         limit = 1.0 + (LENGTHENED - 1.0) * (1.0 - share)
         reached = np.sum(step * normals, axis=1) / height
@@ -95,7 +95,7 @@ def _share(distance: float) -> float:
 
 
 def _measured(front: Front, points: Array) -> tuple[Array, Array]:
-    """Return unit normals (p, 3) and areas (p,) at points."""
+    """Return unit normals (p, 3) at points, and areas (c,) of cells."""
     corners = points[front.cells]
     ahead, behind = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
@@ -108,8 +108,7 @@ def _measured(front: Front, points: Array) -> tuple[Array, Array]:
     normals = _gathered(at, (weights[:, :, None] * unit[:, None]).reshape(-1, 3), len(points))
     normals[front.root] -= np.outer(normals[front.root] @ front.normal, front.normal)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    areas: Array = np.bincount(at, np.repeat(twice / 8.0, 4), len(points)).astype(np.float64)
-    return normals, areas
+    return normals, 0.5 * twice
 
 
 def _towards_middle(front: Front, points: Array) -> Array:
@@ -142,7 +141,7 @@ class _Solver:
     order: Indices | None = None
 
     def __call__(
-        self, front: Front, points: Array, mass: Array, wanted: Array, length: float
+        self, front: Front, points: Array, area: Array, wanted: Array, length: float
     ) -> Array:
         from scipy.sparse import coo_array
         from scipy.sparse.linalg import splu
@@ -150,10 +149,9 @@ class _Solver:
         count = len(points)
         corners = points[front.cells]
         steps = np.roll(corners, -1, axis=1) - corners
-        crossed = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-        area = 0.5 * np.linalg.norm(crossed, axis=1)
         weights = (0.5 * length**2 * area[:, None] / np.sum(steps**2, axis=2)).reshape(-1)
         a, b = front.cells.reshape(-1), np.roll(front.cells, -1, axis=1).reshape(-1)
+        mass = np.bincount(a, np.repeat(0.25 * area, 4), count)
         diagonal = mass + np.bincount(a, weights, count) + np.bincount(b, weights, count)
         scale = 1.0 / np.sqrt(diagonal)
         off = -weights * scale[a] * scale[b]

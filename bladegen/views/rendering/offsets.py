@@ -4,7 +4,7 @@ import numpy as np
 
 from bladegen.support.arrays import Array
 
-__all__ = ["offsets"]
+__all__ = ["offsets", "outward_normals"]
 
 
 def offsets(sections: Array, reference: Array) -> Array:
@@ -22,8 +22,14 @@ def offsets(sections: Array, reference: Array) -> Array:
     (..., k, n) array
         Positive outside of the reference.  What a point moves along the skin does not count.
     """
-    along, around = np.gradient(reference, axis=0), np.gradient(reference, axis=1)
-    normals = np.cross(along, around)
-    inward = np.sum(normals * (reference - reference.mean(axis=1, keepdims=True))) < 0.0
-    normals /= np.linalg.norm(normals, axis=-1, keepdims=True) * (-1.0 if inward else 1.0)
-    return np.asarray(np.sum((sections - reference) * normals, axis=-1))
+    return np.asarray(np.sum((sections - reference) * outward_normals(reference), axis=-1))
+
+
+def outward_normals(sections: Array) -> Array:
+    """Return unit normals (k, n, 3) of a surface, outward; zero where it has none."""
+    normals = np.cross(np.gradient(sections, axis=0), np.gradient(sections, axis=1))
+    if np.sum(normals * (sections - sections.mean(axis=1, keepdims=True))) < 0.0:
+        normals = -normals
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    unit: Array = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+    return unit

@@ -11,6 +11,8 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import bladegen as bg
+from bladegen.blade.edges import MinimumThickness
+from bladegen.blade.layup.pieces import section
 from bladegen.cli import commands
 from bladegen.definition.structure.positions import LEADING_EDGE, Arc, PlaneCut, Shifted
 from bladegen.measures.checks import check_blade
@@ -57,10 +59,12 @@ def test_a_blade_without_structure_has_no_layup(bare):
 
 def test_a_skin_weighs_its_outline(bare):
     laid = inside(bare, layer("skin", *TE)).at(ETA)
-    steps = np.linalg.norm(np.diff(bare.sections(ETA), axis=1), axis=-1)
+    around = bare.sections(ETA)
+    around = np.concatenate([around, around[:, :1]], axis=1)  # the trailing edge among it
+    steps = np.linalg.norm(np.diff(around, axis=1), axis=-1)
     assert_allclose(laid.width[0], steps.sum(axis=1), rtol=1e-12)
     assert_allclose(laid.mass_per_length, DENSITY * 0.01 * steps.sum(axis=1), rtol=1e-12)
-    middles = 0.5 * (bare.sections(ETA)[:, 1:] + bare.sections(ETA)[:, :-1])
+    middles = 0.5 * (around[:, 1:] + around[:, :-1])
     centre = (middles * steps[..., None]).sum(axis=1) / steps.sum(axis=1)[:, None]
     assert_allclose(laid.centre, centre, atol=1e-9)
 
@@ -74,6 +78,59 @@ def test_layers_side_by_side_are_the_skin(bare):
     assert_allclose(split.mass, whole.mass, rtol=1e-12)
     assert_allclose(split.centre, whole.centre, atol=1e-9)
     assert sum(split.layer_masses.values()) == pytest.approx(split.material_masses["glass"])
+
+
+def trailing_edge(blade, eta):
+    """Corners (k, 3) of the suction and the pressure side, and how far they are apart."""
+    first, last = blade.sections(eta)[:, [0, -1]].swapaxes(0, 1)
+    return first, last, np.linalg.norm(last - first, axis=-1)
+
+
+@pytest.fixture(scope="module")
+def blunt(bare):
+    """The same blade with a trailing edge 8 % of the chord wide outside of its root."""
+    return bg.Blade.from_definition(
+        bare.definition, landmarks=101, trailing_edge=MinimumThickness(0.5, 0.08)
+    )
+
+
+def test_a_layer_that_reaches_the_trailing_edge_covers_its_half_of_it(blunt):
+    first, last, wide = trailing_edge(blunt, ETA)
+    kinds = {"whole": TE, "upper": (at(0.0), at(0.3)), "lower": (at(0.6), at(1.0)),
+             "off": (at(0.1), at(0.9)), "none": (at(0.0), at(0.0))}  # fmt: skip
+    laid = inside(blunt, *(layer(name, *ends) for name, ends in kinds.items())).at(ETA)
+    outline = np.linalg.norm(np.diff(blunt.sections(ETA), axis=1), axis=-1).sum(axis=1)
+    shares = {"whole": (1.0, 1.0), "upper": (0.3, 0.5), "lower": (0.4, 0.5), "off": (0.8, 0.0)}
+    for name, width in zip(kinds, laid.width, strict=True):
+        part, edge = shares.get(name, (0.0, 0.0))
+        assert_allclose(width, part * outline + edge * wide, rtol=1e-9, atol=1e-12, err_msg=name)
+    assert_allclose(2.0 * laid.half_edge * outline, wide, rtol=1e-9)
+    short = inside(blunt, layer("a", at(0.0), at(1e-4))).at(ETA)
+    assert_allclose(short.centre[2], 0.75 * first[2] + 0.25 * last[2], atol=2e-3)
+
+
+def test_a_layer_around_the_trailing_edge_is_its_two_halves(blunt):
+    wide = constant(0.8)
+    ends = Shifted(at(1.0), wide, -0.5), Shifted(at(0.0), wide, 0.5)
+    halves = layer("lower", ends[0], at(1.0)), layer("upper", at(0.0), ends[1])
+    layup = inside(blunt, layer("around", *ends), *halves)
+    whole, lower, upper = (layup.at(ETA).layer_mass[i] for i in range(3))
+    assert_allclose(whole, lower + upper, rtol=1e-12)
+    assert_allclose(whole / DENSITY / 0.01, 0.8 + trailing_edge(blunt, ETA)[2], rtol=1e-9)
+    centre = layup.at(ETA).layer_centre
+    assert_allclose(centre[0] * whole[:, None], centre[1] * lower[:, None] + centre[2]
+                    * upper[:, None])  # fmt: skip
+    assert_allclose(layup.at(ETA).arcs[0].sum(axis=-1), 0.0, atol=1e-9)
+
+
+def test_a_drawing_shows_the_trailing_edge_covered(blunt):
+    wide = constant(0.8)
+    edge = layer("edge", Shifted(at(1.0), wide, -0.5), Shifted(at(0.0), wide, 0.5))
+    drawn = section(inside(blunt, edge, layer("skin", *TE)).blade, 0.6)
+    assert [piece.layer for piece in drawn.pieces] == ["edge", "edge", "skin"]
+    middle = 0.5 * drawn.outline[[1, -2]].sum(axis=0)
+    for piece in drawn.pieces[:2]:
+        assert np.linalg.norm(piece.border - middle, axis=-1).min() < 1e-9
 
 
 def test_places_on_the_round_root_are_those_of_its_circle(bare):
@@ -189,6 +246,13 @@ def test_what_fits_has_no_findings(bare):
             [
                 layer("a", *strip(LEADING_EDGE, 0.5)),
                 layer("b", *strip(PlaneCut("suction", constant(-0.1)), 9.0)),
+            ],
+            "a: overlaps b, by up to",
+        ),
+        (
+            [
+                layer("a", Shifted(at(1.0), constant(0.2), -0.5), Shifted(at(0.0), THIN, 0.5)),
+                layer("b", *strip(at(0.98), 0.1)),
             ],
             "a: overlaps b, by up to",
         ),

@@ -76,6 +76,11 @@ ANCHORS = [
         "width": {**over(0.3, 0.05), "defines": ["end_nd_arc"]},
     },
     {
+        "name": "edge",
+        "midpoint_nd_arc": {"anchor": {"name": "TE", "handle": "end_nd_arc"}},
+        "width": {**over(0.8, 0.1), "defines": BOTH},
+    },
+    {
         "name": "behind",
         "offset_arc": {
             "defines": "start_nd_arc",
@@ -104,6 +109,7 @@ WAYS = {
             anchored("cap", "cap.start_nd_arc", "cap.end_nd_arc", start_nd_grid=0.2),
             anchored("nose", "nose.start_nd_arc", "nose.end_nd_arc"),
             anchored("core", "tail.end_nd_arc", "cap.start_nd_arc"),
+            anchored("edge", "edge.start_nd_arc", "edge.end_nd_arc"),
             anchored("next", "behind.start_nd_arc", "LE.start_nd_arc"),
             anchored("wall", "all.start_nd_arc", "all.end_nd_arc", web="main"),
             layer("other side", web="main", material="glass"),
@@ -125,6 +131,9 @@ WAYS = {
                 width=over(0.3, 0.1),
                 end_nd_arc=over(0.1, 0.1),
             ),
+            layer("edge", midpoint_nd_arc={"fixed": "TE", **over(1, 1)}, width=over(0.8, 0.1)),
+            layer("on", start_nd_arc={"fixed": "edge"}, end_nd_arc={"fixed": "LE"}),
+            layer("round", start_nd_arc=over(0.9, 0.95), end_nd_arc=over(0.1, 0.05)),
             layer("end", end_nd_arc={"fixed": "TE"}, width=over(0.3, 0.1)),
             layer("wall", web="main", fiber_orientation=over(0.7, 0.7)),
         ],
@@ -132,10 +141,18 @@ WAYS = {
 }
 
 
+def assert_around(edge):
+    """A strip about the trailing edge starts on the pressure side and ends on the suction side."""
+    assert edge.around
+    assert (edge.start.times, edge.end.times) == (-0.5, 0.5)
+    assert_allclose(base_of(edge.start).fraction.values, 1.0)
+    assert_allclose(base_of(edge.end).fraction.values, 0.0)
+
+
 def test_every_way_of_windio2():
     structure, said = read(2, WAYS[2])
     assert said == []
-    skin, cap, nose, core, behind, wall, other = structure.layers
+    skin, cap, nose, core, edge, behind, wall, other = structure.layers
     assert_allclose(skin.angle.values, [np.pi / 4, 0.0])
     cut = base_of(cap.start)
     assert isinstance(cut, PlaneCut)
@@ -146,6 +163,7 @@ def test_every_way_of_windio2():
     assert base_of(nose.start) is LEADING_EDGE
     assert core.end is cap.start
     assert core.start.times == 1.0
+    assert_around(edge)
     assert behind.start.base is cap.end
     assert behind.end is LEADING_EDGE
     assert_allclose(wall.end.fraction.values, 0.5)
@@ -162,7 +180,11 @@ def test_every_way_of_windio2():
 def test_every_way_of_windio1():
     structure, said = read(1, WAYS[1])
     assert said == []
-    core, skin, cap, nose, tail, end, wall = structure.layers
+    core, skin, cap, nose, tail, edge, on, turned, end, wall = structure.layers
+    assert_around(edge)
+    assert on.start is edge.end
+    assert [one.name for one in structure.layers if one.around] == ["edge", "round"]
+    assert_allclose(turned.end.fraction.values, [0.1, 0.05])
     assert core.end is cap.start
     assert core.start is tail.end
     assert isinstance(skin.start, Arc)
@@ -256,9 +278,9 @@ X = [anchored("one", "x.start_nd_arc", "TE.end_nd_arc")]
         ),
         (
             1,
-            {"layers": [layer("one", midpoint_nd_arc={"fixed": "TE"}, width=over(1, 1))]},
+            {"layers": [layer("one", midpoint_nd_arc={"fixed": "x"}, width=over(1, 1))]},
             "midpoint_nd_arc.fixed",
-            "'TE' is not known here, must be LE; a layer around the trailing edge is two here",
+            "'x' is not known here, must be LE or TE",
         ),
         (
             1,

@@ -64,6 +64,8 @@ def test_faces_have_the_areas_of_layers_and_webs(made):
     for name, area in wanted.items():
         assert_allclose(parts.areas[name], area, rtol=0.01, err_msg=name)
     assert not parts.findings
+    edges = [name for name, *_ in parts.skin.pieces if name.startswith("trailing edge")]
+    assert "trailing edge: TE_reinforcement_SS + TE_reinforcement_PS 1" in edges
 
 
 def test_lines_that_part_all_at_once_stay_in_order():

@@ -63,7 +63,8 @@ def _behind(structure: Structure, laid: Laid, _: Array) -> Iterator[Finding]:
 
 def _beyond(structure: Structure, laid: Laid, _: Array) -> Iterator[Finding]:
     for layer, i in _on_skin(structure):
-        over = np.maximum(-laid.arcs[i, :, 0], laid.arcs[i, :, 1] - 1.0)
+        low = np.zeros(1) if layer.around else -laid.arcs[i, :, 0]
+        over = np.maximum(low, laid.arcs[i, :, 1] - 1.0)
         beyond = (over > NEAR) & (laid.thickness[i] > THIN)
         if beyond.any():
             said = (
@@ -93,8 +94,10 @@ def _overlapping(structure: Structure, laid: Laid, _: Array) -> Iterator[Finding
         if bases[0] == bases[1] or bases in told:
             continue
         first, second = laid.arcs[i], laid.arcs[j]
-        with np.errstate(invalid="ignore"):
-            common = np.minimum(first[:, 1], second[:, 1]) - np.maximum(first[:, 0], second[:, 0])
+        common = _common(first, second)
+        if one.around or other.around:  # their arcs begin below 0, or go on to 1
+            turn = 1.0 if one.around else -1.0
+            common = np.fmax(common, _common(first + turn, second))
         thick = (laid.thickness[i] > THIN) & (laid.thickness[j] > THIN)
         over = thick & (common > NEAR)
         if over.any():
@@ -103,19 +106,38 @@ def _overlapping(structure: Structure, laid: Laid, _: Array) -> Iterator[Finding
             yield _finding(one.name, said, over, laid)
 
 
+def _common(first: Array, second: Array) -> Array:
+    """Return what two strips (k, 2) have in common (k,), below 0 where they are apart."""
+    with np.errstate(invalid="ignore"):
+        found: Array = np.minimum(first[:, 1], second[:, 1]) - np.maximum(first[:, 0], second[:, 0])
+    return found
+
+
 def _stated(structure: Structure, laid: Laid, _: Array) -> Iterator[Finding]:
-    """Compare the rules with the fractions that the file states besides: one finding for all."""
+    """Compare the rules with the fractions that the file states besides: one finding for all.
+
+    Some tools count them from corner to corner, some from the middle of the trailing edge on, as
+    windIO 2 defines them; a file is taken by what fits it.
+    """
     parts = [
-        (one.name, one.stated, laid.arcs[i], laid.thickness[i] > THIN)
+        (one.name, one.stated, laid.arcs[i] + (float(one.around), 0.0), laid.thickness[i] > THIN)
         for one, i in _on_skin(structure)
     ]
     for i, web in enumerate(structure.webs):
         used = [k for k, layer in enumerate(structure.layers) if layer.web == web.name]
         thick = (laid.thickness[used] > THIN).any(axis=0)
         parts.append((web.name, web.stated, laid.web_arcs[i], thick))
-    off = [
-        (np.nan_to_num(_off(one, arcs, laid.eta, there)), name) for name, one, arcs, there in parts
+    ways = [
+        [
+            (
+                _off(one, (np.clip(arcs, 0.0, 1.0) + half) / (1.0 + 2.0 * half), laid.eta, there),
+                name,
+            )
+            for name, one, arcs, there in parts
+        ]
+        for half in (np.zeros(1), laid.half_edge[:, None])
     ]
+    off = min(ways, key=lambda way: sum(float(far.max()) for far, _ in way))
     wide = [(float(far.max()), float(laid.eta[int(np.argmax(far))]), name) for far, name in off]
     apart = sorted(one for one in wide if one[0] > FAR)
     if apart:
@@ -136,7 +158,7 @@ def _off(stated: Stated, arcs: Array, eta: Array, there: Mask) -> Array:
     far = np.zeros(len(eta))
     for end, given in enumerate(stated):
         if given is not None:
-            apart = np.abs(within(given, eta) - np.clip(arcs[:, end], 0.0, 1.0))
+            apart = np.abs(within(given, eta) - arcs[:, end])
             held = there & np.isin(eta, given.grid)
             far = np.maximum(far, np.where(held, np.nan_to_num(apart), 0.0))
     return far
@@ -149,7 +171,7 @@ def _on_skin(structure: Structure) -> Iterator[tuple[Layer, int]]:
 def _strip(layer: Layer) -> bool:
     """Tell whether both ends of a layer rest on one place, by a width."""
     wide = isinstance(layer.start, Shifted) or isinstance(layer.end, Shifted)
-    return wide and base_of(layer.start) == base_of(layer.end)
+    return wide and (layer.around or base_of(layer.start) == base_of(layer.end))
 
 
 def _finding(name: str, said: str, where: Mask, laid: Laid) -> Finding:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.support.arrays import Array
+from bladegen.support.arrays import Array, Mask
 
 __all__ = ["Laid"]
 
@@ -19,11 +19,15 @@ class Laid:
         Span fractions.
     arcs : (layers, ..., 2) array
         Fractions of the arc where layers start and end, those of its web for a layer on one; NaN
-        where there is none.
+        where there is none.  Layers around the trailing edge start below 0.
+    edge : (layers, ..., 2) array of bool
+        Whether they cover the halves of the trailing edge, that of the suction side first.
+    half_edge : (...) array
+        Half the width of the trailing edge over the arc.
     thickness : (layers, ...) array
         [m], 0 where a layer is not.
     width : (layers, ...) array
-        Lengths along the outline, or up the web [m].
+        Lengths along the outline, halves of the trailing edge among them, or up the web [m].
     angle : (layers, ...) array
         Of the fibres to the span [rad].
     web_arcs : (webs, ..., 2) array
@@ -38,6 +42,8 @@ class Laid:
 
     eta: Array
     arcs: Array
+    edge: Mask
+    half_edge: Array
     thickness: Array
     width: Array
     angle: Array

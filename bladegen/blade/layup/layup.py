@@ -2,6 +2,7 @@
 
 A layer weighs its length along the outline times its thickness times its density: that it is
 shorter inside of a thick skin is not taken off (2 % where 0.1 m of laminate goes round 5.2 m).  A
+layer that reaches the trailing edge covers its half of it, too, from the corner to the middle.  A
 web's layers lie on the plane between its two places on the skin.
 """
 
@@ -19,13 +20,15 @@ from bladegen.definition.distribution import united
 from bladegen.definition.structure.positions import knots
 from bladegen.definition.structure.structure import Layer, Structure, Web
 from bladegen.errors import Finding
-from bladegen.support.arrays import Array, ArrayLike
+from bladegen.support.arrays import Array, ArrayLike, Mask
 from bladegen.support.values import state_of
 
-__all__ = ["Layup", "layup"]
+__all__ = ["Layup", "covers_edge", "layup"]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(2)
 APART = 1e-4  # of the span, between the knots of an integral over it
+REACHED = 1e-6  # of the arc, by which a layer may miss the trailing edge that it reaches
+ONE = np.ones(1)
 LOOKED_AT = 201  # spans at which layers are looked at for what does not fit
 
 
@@ -60,7 +63,7 @@ class Layup:
             **{
                 name: part.reshape((*part.shape[:lead], *spans.shape, *part.shape[lead + 1 :]))
                 for name, part in vars(flat).items()
-                for lead in [0 if name == "eta" else 1]
+                for lead in [0 if name in ("eta", "half_edge") else 1]
             }
         )
 
@@ -80,11 +83,19 @@ class Layup:
         order = {web.name: i for i, web in enumerate(webs)}
         wall = np.array([order.get(layer.web, -1) for layer in layers], dtype=np.intp)
         up = wall >= 0
+        wrapped = np.array([layer.around for layer in layers], dtype=bool)
+        own[wrapped, :, 0] -= 1.0
         arcs = own.copy()
         arcs[up] = web_arcs[wall[up]]
         there = ~(np.isnan(own) | np.isnan(arcs)).any(axis=-1)
         safe = np.clip(np.nan_to_num(own), 0.0, 1.0)
         width, moment = outlines.moments(safe[..., 0], safe[..., 1])
+        for i in np.flatnonzero(wrapped):
+            behind = outlines.moments(1.0 + np.clip(np.nan_to_num(own[i, :, 0]), -1.0, 0.0), ONE)
+            width[i], moment[i] = width[i] + behind[0], moment[i] + behind[1]
+        edge = covers_edge(own, wrapped[:, None]) & (there & ~up[:, None])[..., None]
+        width += edge.sum(axis=-1) * outlines.half_edge
+        moment += np.einsum("lkh,k,hki->lki", edge, outlines.half_edge, outlines.edge_middles)
         feet = [outlines.at(np.clip(np.nan_to_num(web_arcs[..., i]), 0.0, 1.0)) for i in (0, 1)]
         height = np.linalg.norm(feet[1] - feet[0], axis=-1)
         height = np.where(np.isnan(web_arcs).any(axis=-1), 0.0, height)
@@ -103,6 +114,8 @@ class Layup:
         return Laid(
             eta,
             arcs,
+            edge,
+            outlines.half_edge / outlines.length,
             thickness,
             width,
             stacked(angle),
@@ -165,6 +178,23 @@ class Layup:
         eta = united(np.linspace(0.0, 1.0, LOOKED_AT), *stated, apart=0.0)
         depth = blade.relative_thickness(eta) * blade.chord(eta)
         return doubts(self.structure, self.at(eta), depth)
+
+
+def covers_edge(arcs: Array, wrapped: Mask) -> Mask:
+    """Return which halves of the trailing edge (..., 2) layers cover.
+
+    Parameters
+    ----------
+    arcs : (..., 2) array
+        Fractions of the arc where they start and end, of those around the edge from below 0.
+    wrapped : (...) array of bool
+        Whether they lie around it.
+    """
+    with np.errstate(invalid="ignore"):
+        wide = arcs[..., 1] - arcs[..., 0] > REACHED
+        reached = np.stack([arcs[..., 0] <= REACHED, arcs[..., 1] >= 1.0 - REACHED], axis=-1)
+    found: Mask = wide[..., None] & (reached | wrapped[..., None])
+    return found
 
 
 def layup(blade: Blade) -> Layup | None:

@@ -63,6 +63,18 @@ class Outlines:
         return total
 
     @cached_property
+    def half_edge(self) -> Array:
+        """Half the widths (k,) of the trailing edges [m]."""
+        found: Array = 0.5 * np.linalg.norm(self.points[:, -1] - self.points[:, 0], axis=-1)
+        return found
+
+    @property
+    def edge_middles(self) -> Array:
+        """Middles (2, k, 3) of the halves of the trailing edges, the suction side's first [m]."""
+        first, last = self.points[:, 0], self.points[:, -1]
+        return np.stack([0.75 * first + 0.25 * last, 0.25 * first + 0.75 * last])
+
+    @cached_property
     def fractions(self) -> Array:
         """Fractions of the arc (k, n) of the landmarks."""
         along = np.cumsum(self._steps, axis=1) / self.length[:, None]

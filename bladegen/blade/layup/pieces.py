@@ -17,6 +17,7 @@ from bladegen.support.arrays import Array
 __all__ = ["Piece", "Section", "section"]
 
 POINTS = 1201  # along the outline
+SHARP = 1e-6  # of the arc, up to which half a trailing edge has no width
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +47,10 @@ class Section:
 
 @dataclass(frozen=True, eq=False)
 class _Skin:
-    """An outline (n, 2) [m] from the nose, inward normals, and fractions of the arc."""
+    """An outline (n, 2) [m] from the nose, inward normals, and fractions of the arc.
+
+    It begins and ends in the middle of the trailing edge, below 0 and above 1.
+    """
 
     points: Array
     inward: Array
@@ -59,6 +63,10 @@ class _Skin:
         own = float(blade.chord(eta)) * blade.profiles(np.array([eta]))[0]
         along = outlines.fractions[0]
         points = np.stack([np.interp(at, along, own[:, i]) for i in (0, 1)], axis=-1)
+        middle, half = 0.5 * (own[:1] + own[-1:]), outlines.half_edge / outlines.length
+        if half[0] > SHARP:
+            points = np.concatenate([middle, points, middle])
+            at = np.concatenate([-half, at, 1.0 + half])
         step = np.gradient(points, axis=0)
         normal = step[:, ::-1] * (-1.0, 1.0)
         return cls(points, normal / np.linalg.norm(normal, axis=-1, keepdims=True), at)
@@ -105,8 +113,12 @@ def section(
     depth = np.zeros(len(skin.fraction))
     walls = {web.name: 0.0 for web in inside.structure.webs}
     found = []
-    for layer, thick, arc in zip(
-        inside.structure.layers, here.thickness[:, 0], here.arcs[:, 0], strict=True
+    for layer, thick, arc, edge in zip(
+        inside.structure.layers,
+        here.thickness[:, 0],
+        here.arcs[:, 0],
+        here.edge[:, 0],
+        strict=True,
     ):
         thickness, (start, end) = times * float(thick), arc
         if not thickness > 0.0:
@@ -115,13 +127,15 @@ def section(
             walls[layer.web] += thickness
             off = walls[layer.web] - 0.5 * thickness
             border = _wall(skin.at(start), skin.at(end), off, thickness)
-        else:
-            on = np.flatnonzero((skin.fraction >= start) & (skin.fraction <= end))
+            found.append(Piece(layer.name, layer.material, border))
+            continue
+        first, last = -1.0 if edge[0] else start, 2.0 if edge[1] else end
+        for low, high in [(-1.0, end), (1.0 + start, 2.0)] if layer.around else [(first, last)]:
+            on = np.flatnonzero((skin.fraction >= low) & (skin.fraction <= high))
             outer, normal = skin.points[on], skin.inward[on]
-            first, last = (outer + normal * d[:, None] for d in (depth[on], depth[on] + thickness))
-            border = np.concatenate([first, last[::-1]])
+            near, far = (outer + normal * d[:, None] for d in (depth[on], depth[on] + thickness))
+            found.append(Piece(layer.name, layer.material, np.concatenate([near, far[::-1]])))
             depth[on] += thickness
-        found.append(Piece(layer.name, layer.material, border))
     return Section(skin.points, tuple(found))
 
 

@@ -46,8 +46,8 @@ class Inside:
     Parameters
     ----------
     skin : Part
-        A closed solid; the faces of its sides carry the names of layers that cover a part of
-        the section.
+        A closed solid; the faces of its sides and of its trailing edge carry the names of layers
+        that cover a part of the section.
     webs : tuple of Part
         Faces between the sides.
     areas : dict of float
@@ -84,12 +84,12 @@ def inside(solid: Solid, layup: Layup) -> Inside:
     CadError
         If the skin is not one valid closed solid.
     """
-    net = solid.net
+    net, order = solid.net, [layer.name for layer in layup.structure.layers]
     bays = bays_of(layup, net.v)
     breaks = np.array([bay.v[0] for bay in bays[1:]])
     halves = [Patch(h.poles * MILLIMETRES, h.u_knots, h.v_knots) for h in net.halves()]
     cut = [pieces.cut(half, np.zeros(0), breaks) for half in halves]
-    zones, webs = list[_Zone](), dict[str, list[Any]]()
+    zones, webs, areas = list[_Zone](), dict[str, list[Any]](), Counter[str]()
     corners = [_corners(*two) for two in pairwise([None, *bays, None])]
     for k, bay in enumerate(bays):
         lines = list[Any]()
@@ -111,10 +111,13 @@ def inside(solid: Solid, layup: Layup) -> Inside:
     if net.blunt:
         strip = edge_strip(net.poles * MILLIMETRES, net.v_knots)
         rows = pieces.cut(strip, np.zeros(0), breaks)
-        faces = [shaping.face(shaping.surface(*row[0])) for row in rows]
-        others += [(f"{EDGE} {i}", face) for i, face in enumerate(faces, start=1)]
+        for bay, row in zip(bays, rows, strict=True):
+            face = shaping.face(shaping.surface(*row[0]))
+            for covering in bay.edge:
+                areas.update(dict.fromkeys(covering, 0.5 * area(face) / MILLIMETRES**2))
+            there = {*bay.edge[0], *bay.edge[1]} - bay.whole
+            zones.append(_Zone(EDGE, (), tuple(filter(there.__contains__, order)), face))
     sheets = tuple(_sheet(web, faces) for web, faces in webs.items())
-    areas = Counter[str]()
     for zone in zones:
         areas.update(dict.fromkeys(zone.layers, area(zone.face) / MILLIMETRES**2))
     skin, found = _skin(solid.name, zones, others, areas), _missed(layup, areas)

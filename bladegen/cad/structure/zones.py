@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bladegen.blade.layup.layup import Layup
+from bladegen.blade.layup.layup import Layup, covers_edge
 from bladegen.blade.layup.outlines import Outlines
 from bladegen.blade.layup.shell.lines import mesh_lines
 from bladegen.definition.distribution import united
@@ -48,6 +48,8 @@ class Bay:
     layers : tuple of tuples of str
         For each zone, between a line and the next, the layers that cover it, from the outside to
         the inside.
+    edge : pair of tuples of str
+        The layers that cover the halves of the trailing edge, next to the first and the last line.
     whole : frozenset of str
         The layers that cover all of the section.
     """
@@ -57,6 +59,7 @@ class Bay:
     nose: int
     feet: dict[str, tuple[int, int]]
     layers: tuple[tuple[str, ...], ...]
+    edge: tuple[tuple[str, ...], tuple[str, ...]]
     whole: frozenset[str]
 
     @cached_property
@@ -83,7 +86,8 @@ class Bay:
         last = len(self.lines) - 1
         feet = {name: (last - a, last - b) for name, (a, b) in self.feet.items()}
         lines = 1.0 - self.lines[::-1]
-        return Bay(self.v, lines, last - self.nose, feet, self.layers[::-1], self.whole)
+        layers, edge = self.layers[::-1], (self.edge[1], self.edge[0])
+        return Bay(self.v, lines, last - self.nose, feet, layers, edge, self.whole)
 
 
 def bays_of(layup: Layup, v: Array) -> list[Bay]:
@@ -182,7 +186,13 @@ def _bay(layup: Layup, v: Array) -> Bay:
     centres = 0.5 * (between[1:] + between[:-1])
     ends = [[outlines.places(end)[half] for end in (one.start, one.end)] for one in here.layers]
     arcs = np.reshape(ends, (-1, 2))
-    covers = (arcs[:, :1] <= centres) & (centres <= arcs[:, 1:])
+    wrapped = np.array([one.around for one in here.layers], dtype=bool)
+    first, last = arcs[:, :1] <= centres, centres <= arcs[:, 1:]
+    covers = np.where(wrapped[:, None], first | last, first & last)
     names = np.array([one.name for one in here.layers], dtype=object)
     layers = tuple(tuple(names[row]) for row in covers.T)
-    return Bay(v, lines, found.nose, found.feet, layers, frozenset(names[covers.all(axis=1)]))
+    arcs[wrapped, 0] -= 1.0
+    at_edge = covers_edge(arcs, wrapped)
+    edge = tuple(names[at_edge[:, 0]]), tuple(names[at_edge[:, 1]])
+    whole = frozenset(names[covers.all(axis=1)])
+    return Bay(v, lines, found.nose, found.feet, layers, edge, whole)

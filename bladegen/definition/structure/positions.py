@@ -19,6 +19,7 @@ __all__ = [
     "PlaneCut",
     "Position",
     "Shifted",
+    "around",
     "base_of",
     "extent_of",
     "knots",
@@ -26,6 +27,7 @@ __all__ = [
 
 SIDES = ("suction", "pressure")
 FRAMES = ("root", "chord")
+MIDDLE = 0.5  # of the arc, about where the leading edge is
 
 
 @dataclass(frozen=True, repr=False)
@@ -115,6 +117,17 @@ def base_of(position: Position) -> Position:
     while isinstance(position, Shifted):
         position = position.base
     return position
+
+
+def around(start: Position, end: Position) -> bool:
+    """Tell whether what lies between two places lies around the trailing edge.
+
+    It does where it starts on the pressure side and ends on the suction side, both by the arc.
+    """
+    first, last = base_of(start), base_of(end)
+    if not (isinstance(first, Arc) and isinstance(last, Arc)):
+        return False
+    return bool(first.fraction.values.min() > MIDDLE > last.fraction.values.max())
 
 
 def extent_of(*positions: Position) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from bladegen.definition.distribution import Distribution
-from bladegen.definition.structure.positions import Position
+from bladegen.definition.structure.positions import Position, around
 from bladegen.errors import DefinitionError
 from bladegen.support.values import brief
 
@@ -110,6 +110,11 @@ class Layer:
     stated: Stated = NOTHING
 
     __repr__ = brief
+
+    @property
+    def around(self) -> bool:
+        """Whether it lies around the trailing edge, from the pressure to the suction side."""
+        return not self.web and around(self.start, self.end)
 
 
 @dataclass(frozen=True, repr=False)

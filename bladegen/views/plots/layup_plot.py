@@ -66,9 +66,13 @@ def _strips(axis: Any, structure: Any, laid: Laid, colours: dict[str, str]) -> N
         if layer.web or not there.any():
             continue
         colour = colours[layer.material]
-        axis.fill_between(eta, start, end, where=there, linewidth=0, alpha=0.6, color=colour)
+        drawn = (
+            [(0.0 * end, end), (1.0 + start, 1.0 + 0.0 * end)] if layer.around else [(start, end)]
+        )
+        for low, high in drawn:
+            axis.fill_between(eta, low, high, where=there, linewidth=0, alpha=0.6, color=colour)
         at = int(np.flatnonzero(there)[np.count_nonzero(there) // 2])
-        middle = 0.5 * (start[at] + end[at])
+        middle = 0.5 * (max(start[at], 0.0) + end[at])
         axis.text(eta[at], middle, layer.name, fontsize=7, color=INK, va="center", ha="center")
     for web, feet in zip(structure.webs, laid.web_arcs, strict=True):
         for i in (0, 1):

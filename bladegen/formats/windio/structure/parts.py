@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from bladegen.definition.distribution import Distribution
-from bladegen.definition.structure.positions import Arc, Position
+from bladegen.definition.structure.positions import Arc, Position, Shifted
 from bladegen.definition.structure.structure import Axes, Layer, Material, Stated, Structure, Web
 from bladegen.errors import DefinitionError
 from bladegen.formats.common.document import FRACTION, Node, Notes, Range
@@ -25,15 +25,17 @@ __all__ = [
     "OFFSET",
     "START",
     "WIDTH",
+    "Places",
     "assembled",
+    "beside",
     "curve",
     "given_extent",
     "guarded",
     "layer",
+    "strip",
     "whole",
 ]
 
-WRAPPED = "a layer around the trailing edge is two here, one a side"
 START, MIDDLE, END = "start_nd_arc", "midpoint_nd_arc", "end_nd_arc"  # of a region of the skin
 ARC = Range(-1.0, 2.0, "of the arc")
 OFFSET = Range(-100.0, 100.0, "m")
@@ -56,6 +58,7 @@ HELD = {
 BONDS = ("resin", "adhesive")  # in no layer, and WISDEM runs no blade without them
 OWN = frozenset({"name", "rho", "orth", "ply_t", *HELD})
 
+Places = tuple[Position, Position]
 T = TypeVar("T")
 
 
@@ -91,6 +94,23 @@ def curve(node: Node, allowed: Range, factor: float = 1.0) -> Distribution | Non
 def whole(value: float) -> Arc:
     """Return the same fraction of the arc at all spans."""
     return Arc(Distribution.constant(value))
+
+
+def strip(middle: Position | None, width: Distribution | None) -> Places | None:
+    """Return the ends of a strip about a place; about the trailing edge one is on each side."""
+    if middle is None or width is None:
+        return None
+    return Shifted(beside(middle, START), width, -0.5), Shifted(beside(middle, END), width, 0.5)
+
+
+def beside(middle: Position, handle: str) -> Position:
+    """Return the place from which a strip about another one goes on to its start or its end.
+
+    A strip about the trailing edge starts on the pressure side and ends on the suction side.
+    """
+    if isinstance(middle, Arc) and np.all(np.isin(middle.fraction.values, (0.0, 1.0))):
+        return whole(1.0 if handle == START else 0.0)
+    return middle
 
 
 def layer(

@@ -26,13 +26,12 @@ from bladegen.definition.structure.positions import (
 from bladegen.definition.structure.structure import NOTHING, Layer, Stated, Structure, Web
 from bladegen.formats.common.document import Node, Notes, Range
 from bladegen.formats.windio.structure import parts
-from bladegen.formats.windio.structure.parts import END, MIDDLE, START, WRAPPED
+from bladegen.formats.windio.structure.parts import END, MIDDLE, START, Places
 
 __all__ = ["read"]
 
 TURN = Range(-np.pi, np.pi, "rad")
 EDGES = {START: 0.0, END: 1.0}
-Places = tuple[Position, Position]
 
 
 def read(root: Node) -> Structure | None:
@@ -100,7 +99,7 @@ class _Places:
             middle = self._end(node, MIDDLE)
             if not node.has("width"):
                 node.problem(f"{MIDDLE} is given without a width, must have one")
-            return _strip(middle, width)
+            return parts.strip(middle, width)
         if width is not None:
             if _fixed(node, START) or not node.has(END):
                 start = self._end(node, START)
@@ -133,7 +132,7 @@ class _Places:
             return None
         if not node.has("width"):
             node.problem("offset_y_pa is given without a width, must have one")
-        return _strip(PlaneCut(side, offset, rotation, frame), width)
+        return parts.strip(PlaneCut(side, offset, rotation, frame), width)
 
     def _end(self, node: Node, key: str) -> Position | None:
         """Return one place: fixed to an edge or to another layer, or a fraction of the arc."""
@@ -146,10 +145,12 @@ class _Places:
             return parts.whole(EDGES[key])
         if name == "LE":
             return LEADING_EDGE
+        if name == "TE":  # in the middle of a strip
+            return parts.whole(1.0)
         if name in self.asked or len(self.asked) > parts.DEEPEST:
             place["fixed"].problem(f"{name} rests on itself, must rest on a place that is given")
         elif key == MIDDLE:
-            place["fixed"].problem(f"{name!r} is not known here, must be LE; {WRAPPED}")
+            place["fixed"].problem(f"{name!r} is not known here, must be LE or TE")
         elif name not in self.entries:
             place["fixed"].problem(f"{name!r} is not known here, must be TE, LE or a layer")
         else:
@@ -159,12 +160,6 @@ class _Places:
                 return other[key == START]
             place["fixed"].problem(f"where {name} lies is not known")
         return None
-
-
-def _strip(middle: Position | None, width: Distribution | None) -> Places | None:
-    if middle is None or width is None:
-        return None
-    return Shifted(middle, width, -0.5), Shifted(middle, width, 0.5)
 
 
 def _fixed(node: Node, key: str) -> bool:

@@ -170,7 +170,8 @@ class _Anchors:
         width = parts.curve(node["width"], parts.WIDTH)
         toward = 1.0 if handle == END else -1.0
         if MIDDLE in _defined(node, "plane_intersection") or node.has(MIDDLE):
-            base, times = self._own(node, name, MIDDLE), 0.5 * toward
+            middle, times = self._own(node, name, MIDDLE), 0.5 * toward
+            base = None if middle is None else parts.beside(middle, handle)
         elif handle in OTHER and OTHER[handle] not in _defined(node, "width"):
             base, times = self._own(node, name, OTHER[handle]), toward
         else:

@@ -95,6 +95,8 @@ def _middle(strip: Strip, written: Written) -> Document:
         return {**_plane(strip.base, written), "side": strip.base.side}
     if strip.base == LEADING_EDGE:
         return {MIDDLE: {"fixed": "LE"}}
+    if strip.base in EDGES:
+        return {MIDDLE: {"fixed": "TE", **pairs(whole(1.0).fraction)}}
     return {MIDDLE: pairs(strip.base.fraction)} if isinstance(strip.base, Arc) else {}
 
 

@@ -138,6 +138,9 @@ class _Anchors:
         if not (known or self._single(anchor, end, strip.base)):
             return False
         anchor["width"] = {**pairs(strip.width), "defines": defines}
+        if strip.by == 0.5 and strip.base in EDGES:
+            said = "its middle is the trailing edge; WISDEM 4 takes middles at LE alone"
+            self.written.note(f"structure: {one.name}", said)
         return True
 
     def _middle(self, anchor: Document, place: Position) -> bool:

@@ -30,6 +30,7 @@ __all__ = ["EDGES", "Strip", "Written", "extents", "materials", "strip_of"]
 STRAIGHT = 1e-9  # m, of an axis from a line
 POINTS = 41  # of fractions over span, where the file gave none
 LANDMARKS = 401
+AROUND = whole(1.0), whole(0.0)  # between which a strip about the trailing edge lies
 EDGES = {whole(0.0): START, whole(1.0): END}  # the trailing edge, by its handle
 
 
@@ -50,7 +51,8 @@ def strip_of(start: Position, end: Position) -> Strip | None:
         return Strip(end, start.width, -1.0)
     if isinstance(start, Shifted) and isinstance(end, Shifted):
         halves = (start.times, end.times) == (-0.5, 0.5)
-        if halves and start.base == end.base and start.width == end.width:
+        about = start.base == end.base or (start.base, end.base) == AROUND
+        if halves and about and start.width == end.width:
             return Strip(start.base, start.width, 0.5)
     return None
 

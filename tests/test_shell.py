@@ -20,6 +20,7 @@ from bladegen.blade.layup.shell.inp import FORCE, GRAVITY, inp_lines, nodal_thic
 from bladegen.blade.layup.shell.laminates import even, plane_stiffness
 from bladegen.blade.layup.shell.model import shell_model
 from bladegen.blade.layup.shell.quality import ETA, XI, corner_normals, slopes
+from bladegen.blade.layup.shell.trailing_edge import WIDE, openness, panels
 from bladegen.cli import commands
 from bladegen.definition.structure.positions import Arc
 from bladegen.errors import ExportError, GeometryError
@@ -40,6 +41,15 @@ def blade():
 @pytest.fixture(scope="module")
 def model(blade):
     return shell_model(blade.layup, 2.0)
+
+
+@pytest.fixture(scope="module")
+def flat(blade):
+    """The shell of a blade whose trailing edge is 8 % of the chord wide outside of its root."""
+    thick = bg.Blade.from_definition(
+        blade.definition, landmarks=101, trailing_edge=MinimumThickness(0.5, 0.08)
+    )
+    return shell_model(thick.layup, 4.0)
 
 
 def tube(*layers):
@@ -112,8 +122,9 @@ def test_one_layer_is_its_own_stand_in(angle, thickness):
     assert_allclose([other.along, other.across, other.density], [0.5e10, 2e10, 950.0])
 
 
-def test_elements_meet_side_by_side_and_webs_share_the_skin_s_nodes(model):
-    mesh = model.mesh
+@pytest.mark.parametrize("shape", ["model", "flat"])
+def test_elements_meet_side_by_side_and_webs_share_the_skin_s_nodes(shape, request):
+    mesh = request.getfixturevalue(shape).mesh
     corners = mesh.quads[:, [0, 1, 2, 3, 0]]
     sides = [
         (min(a, b), max(a, b), int(mid))
@@ -125,6 +136,7 @@ def test_elements_meet_side_by_side_and_webs_share_the_skin_s_nodes(model):
     ends = {*mesh.root.tolist(), *mesh.tip.tolist()}
     for (a, b, _), count in Counter(sides[: 4 * int(skin.sum())]).items():
         assert count == (1 if {a, b} <= ends else 2)  # the skin is closed but for its ends
+    assert (mesh.part[:-1] <= mesh.part[1:]).all()
     own = set(mesh.quads[skin].ravel().tolist())
     for web in range(1, 3):
         quads = mesh.quads[mesh.part == web]
@@ -149,21 +161,82 @@ def test_the_skin_looks_outward_and_no_element_folds(blade, model, mirrored):
     assert (np.abs(np.einsum("mi,mi->m", *made.axes)) < 1e-9).all()
 
 
-def test_a_trailing_edge_that_is_closed_is_said_with_its_place(blade, model):
+def test_a_wide_trailing_edge_is_a_panel_of_its_own(flat):
+    mesh, laid = flat.mesh, flat.blade.layup.at(np.unique(flat.mesh.eta))
+    on = flat.sets["TRAILING_EDGE"]
+    assert_allclose(mesh.edge[on].sum(axis=1), 1.0)
+    assert not {*on.tolist()} & {*flat.sets["SUCTION_SIDE"].tolist()}
+    assert not {*on.tolist()} & {*flat.sets["PRESSURE_SIDE"].tolist()}
+    ((low, high),) = mesh.panels
+    eta = np.linspace(low, high, 501)
+    corners = flat.blade.sections(eta)[:, [0, -1]]
+    width = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=-1)
+    middles = corners.mean(axis=1)
+    run = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(middles, axis=0), axis=-1)))
+    assert_allclose(flat.areas[on].sum(), np.trapezoid(width, run), rtol=0.05)  # less its ends
+    outward = np.cross(*(flat.mesh.points[mesh.quads[on][:, [1, 3]]] - flat.mesh.points[
+        mesh.quads[on][:, :1]]).swapaxes(0, 1))  # fmt: skip
+    nose = flat.blade.sections(mesh.eta[on])[:, 50]
+    behind = mesh.points[mesh.quads[on, 0]] - nose
+    assert (np.einsum("mi,mi->m", outward, behind) > 0.0).all()
+    along, across = flat.axes
+    assert (along[on, 2] > 0.9).all()
+    assert_allclose(np.einsum("mi,mi->m", along[on], across[on]), 0.0, atol=1e-9)
+    row = np.searchsorted(laid.eta, mesh.eta[on])
+    for i, own in enumerate(flat.thickness[:, on]):
+        covered = (laid.edge[i, row] * mesh.edge[on]).sum(axis=-1)
+        assert_allclose(own, covered * laid.thickness[i, row], atol=1e-12)
+    assert_allclose(flat.mass, flat.blade.layup.mass, rtol=0.02)
+    assert flat.quality["smallest_jacobian"] > 0.0
+
+
+def test_the_rim_of_a_panel_is_among_the_nodes_of_the_tip(flat):
+    mesh = flat.mesh
+    points = mesh.points[mesh.tip]
+    corners = flat.blade.sections([1.0])[0, [0, -1]]
+    for place in (*corners, corners.mean(axis=0)):
+        assert np.linalg.norm(points - place, axis=-1).min() < 1e-6
+
+
+@given(
+    st.lists(st.floats(0.0, 0.2), min_size=3, max_size=40),
+    st.floats(0.02, 1.0),
+)
+def test_panels_keep_apart_and_close_within_the_blade(width, size):
+    width = np.array(width)
+    made = panels(width, np.ones(len(width)), size)
+    at = 0
+    for panel in made:
+        low, high = panel.reach
+        assert 0 <= low <= panel.first < panel.last <= high < len(width)
+        assert at <= low
+        at = high
+        assert (width[low + panel.closes[0] : high + 1 - panel.closes[1]] > WIDE).all()
+    fine = np.interp(np.arange(2 * len(width) - 1) / 2, np.arange(len(width)), width)
+    opened = openness(made, fine)
+    for panel in made:
+        assert (opened[2 * panel.first : 2 * panel.last + 1] == 1.0).all()
+    covered = sum(np.isin(np.arange(len(width)), np.arange(p.reach[0] + p.closes[0], p.reach[1] + 1
+                  - p.closes[1])) for p in made)  # fmt: skip
+    assert ((opened[::2] > 0.0) == covered).all()
+
+
+def test_a_trailing_edge_that_is_closed_is_said_with_its_place(model, flat):
     def place(of):
         (said,) = (one.message for one in of.findings if one.where == "shell: trailing edges")
-        width, share, eta = map(float, re.findall(r"to (\d+) mm, (\d+) % .* = ([\d.]+)", said)[0])
+        width, share, eta = map(float, re.findall(r"to (\d+) mm, (\d+) % .*? = (\d\.\d+)", said)[0])
         ends = of.blade.sections([eta])[0, [0, -1]]
         found = np.linalg.norm(ends[0] - ends[1])
         assert_allclose(found, 1e-3 * width, rtol=0, atol=1e-3)
         assert_allclose(found / of.blade.chord(eta), 0.01 * share, rtol=0, atol=0.005)
         return said
 
-    assert "flatbacks" not in place(model)
-    thick = bg.Blade.from_definition(
-        blade.definition, landmarks=101, trailing_edge=MinimumThickness(0.5, 0.08)
-    )
-    assert "no panel for such flatbacks" in place(shell_model(thick.layup, 4.0))
+    assert "panel" not in place(model)
+    corners = flat.blade.sections([0.5])[0, [0, -1]]
+    wide = {"gap": float(np.linalg.norm(corners[1] - corners[0])), "widest": 0.5}
+    said = place(replace(flat, mesh=replace(flat.mesh, **wide)))
+    assert "too few rows of elements there for a panel" in said
+    assert re.search(r"; they are panels of their own at eta = 0\.\d+ to 1\.000$", said)
 
 
 def test_the_model_weighs_what_the_layers_weigh(blade, model):

@@ -1,7 +1,8 @@
 """A blade as a shell model: elements, the laminate of each, sets by name, and what it weighs.
 
 A layer that covers a part of an element is there with that part of its thickness, so that the
-model weighs what its layers do.
+model weighs what its layers do; what lies on a trailing edge that is closed is on the elements
+beside it.
 """
 
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from bladegen.blade.layup.laid import Laid
 from bladegen.blade.layup.layup import Layup
 from bladegen.blade.layup.shell.mesh import Mesh, mesh_of
 from bladegen.blade.layup.shell.quality import areas, corner_normals, figures
+from bladegen.blade.layup.shell.trailing_edge import WIDE
 from bladegen.blade.spans import MIRROR
 from bladegen.definition.structure.structure import Structure
 from bladegen.errors import Finding, GeometryError
@@ -28,7 +30,7 @@ MIRRORED = [0, 3, 2, 1, 7, 6, 5, 4]  # nodes of an element that looks the other 
 THIN = 1e-6  # m
 WHOLE = 0.999  # of an element, covered by a layer
 NONE = 1e-3
-FLATBACK = 0.05  # of the chord: a trailing edge that carries load
+HALF = 0.75  # of an element on one half of the trailing edge
 MOVED = 1e-3  # of the arc
 TURNED = np.cos(np.radians(20.0))  # of normals in one section
 
@@ -108,9 +110,19 @@ class ShellModel:
         if self.blade.mirrored:  # whose elements go round the other way
             along, across = across, along
         along /= np.linalg.norm(along, axis=-1, keepdims=True)
+        panel = self.panel[:, None]
+        along = np.where(panel, self.mesh.along, along)
+        along /= np.linalg.norm(along, axis=-1, keepdims=True)
         across -= np.einsum("mi,mi->m", across, along)[:, None] * along
         across /= np.linalg.norm(across, axis=-1, keepdims=True)
-        return along, np.where(self.pressure[:, None], -across, across)
+        back: Mask = self.pressure | (self.mesh.edge[:, 1] > HALF)
+        return along, np.where(back[:, None], -across, across)
+
+    @property
+    def panel(self) -> Mask:
+        """Which elements (m,) lie on a panel of the trailing edge."""
+        found: Mask = self.mesh.edge.sum(axis=-1) > 0.0
+        return found
 
     @cached_property
     def pressure(self) -> Mask:
@@ -129,7 +141,9 @@ class ShellModel:
         """Elements by name: parts, sides, and layers where they cover most of an element."""
         skin = self.mesh.part == 0
         found: dict[str, Mask] = {"SKIN": skin}
-        found |= {"SUCTION_SIDE": skin & ~self.pressure, "PRESSURE_SIDE": self.pressure}
+        suction = skin & ~self.pressure & ~self.panel
+        found |= {"SUCTION_SIDE": suction, "PRESSURE_SIDE": self.pressure}
+        found |= {"TRAILING_EDGE": self.panel}
         for i, web in enumerate(self.structure.webs):
             found[f"WEB_{web.name}"] = self.mesh.part == i + 1
         full = self._full
@@ -171,12 +185,14 @@ class ShellModel:
     def findings(self) -> tuple[Finding, ...]:
         """What of the model is not as the blade is."""
         said, mesh = [], self.mesh
+        spans = ", ".join(f"{low:.3f} to {high:.3f}" for low, high in mesh.panels)
+        panels = f"; they are panels of their own at eta = {spans}" if spans else ""
         if mesh.gap > THIN:
             share = mesh.gap / float(self.blade.chord(mesh.widest))
             closed = f"are closed to their middle, up to {1e3 * mesh.gap:.0f} mm"
             where = f", {100.0 * share:.0f} % of the chord at eta = {mesh.widest:.3f}"
-            flat = "; the model has no panel for such flatbacks" if share > FLATBACK else ""
-            said.append(Finding("shell: trailing edges", closed + where + flat))
+            short = "; too few rows of elements there for a panel" if share > WIDE else ""
+            said.append(Finding("shell: trailing edges", closed + where + short + panels))
         for name, by in mesh.lines.moved.items():
             if by > MOVED:
                 where = f"stands up to {by:.3f} of the arc beside its place, to keep off others"
@@ -212,7 +228,8 @@ def shell_model(layup: Layup, size: float = 1.0) -> ShellModel:
     thickness, angle = _covered(layup.structure, mesh, laid)
     if blade.mirrored:
         turned = mesh.quads[:, MIRRORED]
-        mesh = Mesh(**vars(mesh) | {"points": mesh.points * MIRROR, "quads": turned})
+        other = {"points": mesh.points * MIRROR, "along": mesh.along * MIRROR, "quads": turned}
+        mesh = Mesh(**vars(mesh) | other)
     model = ShellModel(blade, layup.structure, mesh, thickness, angle)
     worst = model.quality["smallest_jacobian"]
     if worst <= 0.0:
@@ -228,12 +245,19 @@ def _covered(structure: Structure, mesh: Mesh, laid: Laid) -> tuple[Array, Array
     number = {web.name: i + 1 for i, web in enumerate(structure.webs)}
     thickness = np.zeros((len(structure.layers), len(mesh.quads)))
     low, high = mesh.sides.T
+    beside = np.stack([low == 0.0, high == 1.0], axis=-1) & (mesh.part == 0)[:, None]
+    shut = beside * (mesh.shut[mesh.bay] * laid.half_edge[row])[:, None]
+    wide = np.where(mesh.edge.any(axis=-1), 1.0, high - low)
     for i, layer in enumerate(structure.layers):
         here = mesh.part == number.get(layer.web, 0)
-        ends = laid.arcs[i][row] if not layer.web else _on_web(layer, laid.eta)[row]
-        first, last = np.clip(np.nan_to_num(ends), 0.0, 1.0).T
-        share = (np.minimum(high, last) - np.maximum(low, first)) / (high - low)
+        ends = np.nan_to_num(laid.arcs[i][row] if not layer.web else _on_web(layer, laid.eta)[row])
+        share = np.zeros(len(low))
+        for turn in (0.0, 1.0) if layer.around else (0.0,):
+            first, last = np.clip(ends + turn, 0.0, 1.0).T
+            share += np.maximum(np.minimum(high, last) - np.maximum(low, first), 0.0) / wide
         share = np.where(share > WHOLE, 1.0, np.where(share < NONE, 0.0, share))
+        if not layer.web:
+            share += (laid.edge[i][row] * (mesh.edge + shut / wide[:, None])).sum(axis=-1)
         thickness[i] = np.where(here, share * laid.thickness[i][row], 0.0)
     return thickness, laid.angle[:, row]
 

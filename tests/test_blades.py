@@ -271,7 +271,7 @@ def test_the_layers_of_the_iea_15_mw_weigh_along_the_span_what_is_published():
 def test_what_a_list_shows_of_layers_is_what_they_weigh(name):
     layup = Blade.from_definition(read(name)).layup
     shown = dict(layups()[name])
-    assert shown.pop("findings") == [*map(str, layup.findings)]
+    assert shown.pop("findings") == [*map(str, (*layup.findings, *layup.remarks))]
     made = layup_figures(layup)
     assert made.keys() == shown.keys()
     for key, value in made.items():

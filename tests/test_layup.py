@@ -278,6 +278,21 @@ def test_a_leaning_web_and_one_that_ends_early_are_findings(bare):
     assert said[0].endswith("not counted there (eta = 0.000 to 0.095, 0.505 to 1.000)")
 
 
+def test_a_table_that_runs_out_beyond_the_end_of_its_web_is_a_remark_alone(bare):
+    web = bg.Web("main", *(PlaneCut(side, constant(0.0)) for side in ("suction", "pressure")),
+                 (0.13, 0.87))  # fmt: skip
+    table = bg.Distribution([0.0, 0.1, 0.2, 0.8, 0.9, 1.0], [0.0, 0.0, 0.01, 0.01, 0.0, 0.0])
+    runs = inside(bare, layer("wall", *TE, table, web="main"), webs=(web,))
+    assert not runs.findings
+    (said,) = map(str, runs.remarks)
+    assert said.startswith("structure: main: their thickness runs out to 0")
+    short = inside(
+        bare, layer("wall", *TE, table, web="main"), webs=(replace(web, extent=(0.13, 0.7)),)
+    )
+    assert "main: has a thickness where it has no place" in str(short.findings[0])
+    assert not inside(bare, layer("skin", *TE)).remarks
+
+
 def test_check_weighs_the_layers_and_says_what_does_not_fit(bare):
     blade = inside(bare, layer("a", at(0.4), at(0.3)), layer("skin", *TE)).blade
     figures = check_blade(blade).figures
@@ -304,7 +319,9 @@ def test_info_lists_webs_layers_and_what_they_weigh(file, iea15):
     assert_allclose(
         sum(one["mass_kg"] for one in figures["materials"]), figures["structure_mass_kg"]
     )
-    assert any(said.startswith("structure: web0: has a thickness") for said in figures["findings"])
+    said = "structure: web0, web1: their thickness runs out to 0 at the next point of its table"
+    assert [one for one in figures["findings"] if one.startswith(said)]
+    assert not iea15.layup.findings  # and a build says nothing of it
 
 
 def test_the_iea_15_mw_weighs_what_is_published(iea15):

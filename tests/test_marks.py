@@ -74,6 +74,18 @@ def test_a_line_is_read_as_it_was_written(blade, source, command, settings_):
     assert replace(made, source="other", id="").id != made.id or source == "other"
 
 
+@given(st.text(st.characters(codec="utf-8"), min_size=200, max_size=900))
+def test_lines_of_inp_files_are_no_longer_than_abaqus_takes(tmp_path_factory, command):
+    made = Provenance("1.2.3", "x", "x.yaml", "ab" * 32, "0" * 16, command, ())
+    path = tmp_path_factory.getbasetemp() / "x.inp"
+    path.write_text("** x: 2 elements\n*NODE\n")
+    marks.put(path, made)
+    lines = path.read_text().split("\n")
+    assert max(map(len, lines)) <= 256
+    assert all(line.startswith("** ") for line in lines[:-2])
+    assert marks.read(path) == made
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_each_format_holds_it(folder, products, suffix):
     path = folder / f"a{suffix}"

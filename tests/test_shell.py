@@ -298,6 +298,22 @@ def test_a_file_holds_sets_and_laminates_that_weigh_the_same(model):
     assert read_inp(even_text)[:2] == (nodes, quads)
 
 
+def test_long_names_stay_apart_and_lines_short(flat):
+    long = "w" * 150
+    webs = tuple(replace(web, name=long + web.name) for web in flat.structure.webs)
+    layers = tuple(
+        replace(one, name=long + one.name, web=long + one.web if one.web else "")
+        for one in flat.structure.layers
+    )
+    again = replace(flat, structure=replace(flat.structure, webs=webs, layers=layers))
+    for laminates in (False, True):
+        lines = [*inp_lines(again, laminates=laminates)]
+        assert max(map(len, lines)) <= 256
+        assert max(map(len, re.findall(r"\w+", "\n".join(lines)))) <= 80
+        heads = [line for line in lines if line.startswith("*ELSET")]
+        assert len(set(heads)) == len(heads)
+
+
 def test_walls_do_not_fold_inside(model):
     thick = nodal_thickness(model)
     mesh = model.mesh

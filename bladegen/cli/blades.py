@@ -110,7 +110,7 @@ def _inside(definition: "BladeDefinition") -> dict[str, Any]:
     except BladegenError as error:
         said = f"structure: its mass is not known, since the sections cannot be made: {error}"
         return {"findings": [said]}
-    return layup_figures(layup) | {"findings": [*map(str, layup.findings)]}
+    return layup_figures(layup) | {"findings": [*map(str, (*layup.findings, *layup.remarks))]}
 
 
 def _made_by(path: Path) -> Any:

@@ -32,6 +32,7 @@ HEAD = 1 << 20  # bytes of a file that are looked through, and of what a member 
 STEP_STRING = 200  # characters; ISO 10303-21 allows 256 in a header
 IGES_WIDTH = 72  # characters of a line before its section's letter and number
 BREP_WIDTH = 90  # characters; OCCT's reader takes lines of at most 99
+INP_WIDTH = 250  # characters; Abaqus takes lines of at most 256
 
 
 def put(path: Path, made: Provenance) -> None:
@@ -116,6 +117,10 @@ def _brep(content: bytes, made: Provenance) -> bytes:
     return "".join(f"{piece}\n" for piece in _pieces(made.text, BREP_WIDTH)).encode() + content
 
 
+def _inp(content: bytes, made: Provenance) -> bytes:
+    return "".join(f"** {piece}\n" for piece in _pieces(made.text, INP_WIDTH)).encode() + content
+
+
 def _stl(content: bytes, made: Provenance) -> bytes:
     if content.startswith(TEXT_STL):  # behind the last solid's name, which readers pass over
         return content.rstrip() + f"; {made.text}\n".encode()
@@ -191,6 +196,12 @@ def _brep_text(head: bytes) -> str | None:
     return head[:HEAD].decode("latin-1").partition("CASCADE")[0].replace("\n", "")
 
 
+def _inp_text(head: bytes) -> str | None:
+    comments = re.match(rb"(\*\* ?[^\n]*\n)*", head)
+    lines = comments[0].decode("latin-1").split("\n") if comments else []
+    return "".join(line[3:].rstrip("\r") for line in lines)
+
+
 def _glb_text(head: bytes) -> str | None:
     (size,) = struct.unpack_from("<I", head, 12)
     said = json.loads(head[20 : 20 + size])["asset"]["extras"][NAME]
@@ -218,7 +229,7 @@ _PUT: dict[str, Put] = {
     ".brep": _brep,
     ".stl": _stl,
     **dict.fromkeys((".obj", ".yaml", ".yml"), commented("#")),
-    ".inp": commented("**"),
+    ".inp": _inp,
     "": commented("//"),  # of OpenFOAM, whose files have no suffix
     ".csv": named_columns,
     ".htc": commented(";"),
@@ -237,6 +248,7 @@ _TEXTS: dict[str, Callable[[bytes], str | None]] = {
     **dict.fromkeys((".step", ".stp"), _step_text),
     **dict.fromkeys((".iges", ".igs"), _iges_text),
     ".brep": _brep_text,
+    ".inp": _inp_text,
     ".stl": lambda head: head[:STL_HEADER].decode("latin-1"),
     ".glb": _glb_text,
     ".gif": picture_marks.gif_text,

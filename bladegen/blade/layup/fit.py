@@ -12,7 +12,7 @@ from bladegen.definition.structure.structure import Layer, Stated, Structure
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array, Mask
 
-__all__ = ["doubts"]
+__all__ = ["doubts", "run_ins"]
 
 THIN = 1e-6  # m; published layers run out to as much, and are not there
 NEAR = 1e-3  # of the arc, by which places may miss each other
@@ -38,18 +38,42 @@ def doubts(structure: Structure, laid: Laid, depth: Array) -> tuple[Finding, ...
     )
 
 
+def run_ins(structure: Structure, laid: Laid) -> tuple[Finding, ...]:
+    """Return where tables of thickness run out to 0 beyond the end of a part: one finding for all.
+
+    A table whose points lie apart has a ramp from the last thickness to the first 0; what of it
+    lies beyond the part is not counted, and nobody meant it.
+    """
+    names = [name for name, (lost, ramp) in _lost(structure, laid).items() if (lost & ramp).any()]
+    if not names:
+        return ()
+    said = "their thickness runs out to 0 at the next point of its table, beyond their ends"
+    return (Finding(f"structure: {', '.join(names)}", f"{said}; nothing is counted there"),)
+
+
 def _placeless(structure: Structure, laid: Laid, _: Array) -> Iterator[Finding]:
-    lost: dict[str, Mask] = {}
+    for name, (lost, ramp) in _lost(structure, laid).items():
+        if (lost & ~ramp).any():
+            said = "has a thickness where it has no place; not counted there"
+            yield _finding(name, said, lost, laid)
+
+
+def _lost(structure: Structure, laid: Laid) -> dict[str, tuple[Mask, Mask]]:
+    """Return where parts have a thickness and no place (k,), and where tables only run out."""
+    found: dict[str, tuple[Mask, Mask]] = {}
     for layer, arcs in zip(structure.layers, laid.arcs, strict=True):
         wanted = np.nan_to_num(within(layer.thickness, laid.eta)) > THIN
         inside = (laid.eta >= layer.extent[0]) & (laid.eta <= layer.extent[1])
-        name = layer.web or layer.name
-        lost[name] = lost.get(name, False) | (wanted & inside & np.isnan(arcs).any(axis=-1))
-    for name, where in lost.items():
-        if where.any():
-            yield _finding(
-                name, "has a thickness where it has no place; not counted there", where, laid
-            )
+        nowhere = np.isnan(arcs).any(axis=-1)
+        lost, name = wanted & inside & nowhere, layer.web or layer.name
+        grid, thick = layer.thickness.grid, layer.thickness.values > THIN
+        behind = np.clip(np.searchsorted(grid, laid.eta), 1, len(grid) - 1)
+        first, last = thick[behind - 1], thick[behind]
+        end = np.where(first, grid[behind - 1], grid[behind])  # the thick one of the two points
+        held = np.interp(end, laid.eta, nowhere.astype(float)) < 1.0
+        before = found.get(name, (np.zeros(len(lost), bool), np.ones(len(lost), bool)))
+        found[name] = before[0] | lost, before[1] & (~lost | ((first != last) & held))
+    return found
 
 
 def _behind(structure: Structure, laid: Laid, _: Array) -> Iterator[Finding]:

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.blade.layup.fit import doubts
+from bladegen.blade.layup.fit import doubts, run_ins
 from bladegen.blade.layup.laid import Laid
 from bladegen.blade.layup.outlines import Outlines, within
 from bladegen.blade.spans import MIRROR, span_fractions
@@ -169,15 +169,25 @@ class Layup:
         found: Array = self._weighed[1].sum(axis=0) / self.mass
         return found
 
-    @cached_property
+    @property
     def findings(self) -> tuple[Finding, ...]:
         """What does not fit on this blade's sections, and where."""
+        return self._looked_at[0]
+
+    @property
+    def remarks(self) -> tuple[Finding, ...]:
+        """What is worth a word where a file is shown, and nothing that is lost: see `run_ins`."""
+        return self._looked_at[1]
+
+    @cached_property
+    def _looked_at(self) -> tuple[tuple[Finding, ...], tuple[Finding, ...]]:
         blade = self.blade.mirror_image() if self.blade.mirrored else self.blade
         placed: tuple[Web | Layer, ...] = (*self.structure.webs, *self.structure.layers)
         stated = [given.grid for one in placed for given in one.stated if given is not None]
         eta = united(np.linspace(0.0, 1.0, LOOKED_AT), *stated, apart=0.0)
         depth = blade.relative_thickness(eta) * blade.chord(eta)
-        return doubts(self.structure, self.at(eta), depth)
+        laid = self.at(eta)
+        return doubts(self.structure, laid, depth), run_ins(self.structure, laid)
 
 
 def covers_edge(arcs: Array, wrapped: Mask) -> Mask:

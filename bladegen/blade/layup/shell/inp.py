@@ -9,6 +9,7 @@ Three steps: a force on the tip, the weight, the first modes.  The root is clamp
 """
 
 import re
+import zlib
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -27,6 +28,7 @@ GRAVITY = 9.81  # m/s2
 MODES = 8
 A_LINE = 12  # numbers of a set
 SHRINKS, BY = 60, 0.8  # times that a wall is made thinner whose inside folds, and by how much
+LONGEST = 56  # characters of a name: three of them stand in a line of at most 256
 SOFT = 1e-3  # of the largest modulus, least of an even material: none is singular
 
 
@@ -190,5 +192,8 @@ def _listed(numbers: Indices) -> Iterator[str]:
 
 def _name(text: str) -> str:
     """Return a name as solvers take it."""
-    plain = re.sub(r"[^A-Za-z0-9_]", "_", text)[:70]
-    return plain if plain[:1].isalpha() else f"N_{plain}"
+    plain = re.sub(r"[^A-Za-z0-9_]", "_", text)
+    plain = plain if plain[:1].isalpha() else f"N_{plain}"
+    if len(plain) <= LONGEST:
+        return plain
+    return f"{plain[: LONGEST - 9]}_{zlib.crc32(text.encode()):08x}"

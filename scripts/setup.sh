@@ -117,7 +117,8 @@ if ! is_done "$stamp" ${others[@]+"${others[@]}"}; then
     # Developers and CI use the versions that were tested; users, and `make demo`, the newest allowed.
     pins=()
     [ -z "$extra" ] || pins=(--constraint locks/dev.txt)
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+    # what is imported is compiled then: compiling all of it takes a minute
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile \
         ${pins[@]+"${pins[@]}"} --editable ".${extra:+[$extra]}"
     touch "$stamp"
 fi

@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from scipy.interpolate import make_interp_spline
@@ -15,6 +16,7 @@ from bladegen.definition.blade_definition import (
     ReferenceAxis,
     Station,
 )
+from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.shapes import grassmann
 from bladegen.support.arrays import Array, readonly
@@ -29,6 +31,12 @@ MODERATE = 1.2  # rad; principal angles stay below 90 degrees
 def few(most: int) -> int:
     """How many examples to draw of what is slow: a third of the most in `make test`."""
     return max(1, most // 3) if STEADY else most
+
+
+def by_day(*names: str) -> list:
+    """The bundled blades for a test that is slow: these in `make test`, the others at night."""
+    night = pytest.mark.nightly
+    return [name if name in names else pytest.param(name, marks=night) for name in bundled()]
 
 
 def random_points(rng: np.random.Generator, count: int, n: int) -> Array:

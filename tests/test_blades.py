@@ -415,3 +415,7 @@ def quantities(definition: BladeDefinition) -> list[Distribution]:
         axis.y,
         axis.z,
     ]
+
+
+def test_a_bundled_blade_is_read_once():
+    assert read("nrel5mw") is read("nrel5mw")

@@ -14,15 +14,12 @@ from bladegen.formats.reading import read
 from bladegen.measures import properties
 from bladegen.measures.checks import solid_figures
 from bladegen.surface.tips import round_tip
+from strategies import by_day
 
 FACES = ["suction side", "pressure side", "trailing edge", "root", "tip"]
 
 
-# at night the DTU 10 MW too, whose solids other tests make
-SLOW = [pytest.param("dtu10mw", marks=pytest.mark.nightly)]
-
-
-@pytest.fixture(scope="module", params=["iea15mw", "nrel5mw", *SLOW])
+@pytest.fixture(scope="module", params=by_day("iea15mw"))
 def blade(request):
     return Blade.from_definition(read(request.param))
 

@@ -10,6 +10,7 @@ from bladegen.definition.blade_definition import Distribution
 from bladegen.errors import BladegenError, FileError
 from bladegen.measures import checks
 from bladegen.surface import mesh, mesh_files
+from strategies import by_day
 
 pytestmark = pytest.mark.usefixtures("foreign_here")
 
@@ -19,7 +20,7 @@ def blade():
     return bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
 
 
-@pytest.mark.parametrize("name", bg.bundled())
+@pytest.mark.parametrize("name", by_day("iea15mw"))
 def test_reference_blades_are_sound(name):
     check = checks.check_blade(bg.Blade.from_definition(bg.read(name)))
     assert check.kind == "blade"

@@ -35,9 +35,9 @@ def test_the_bundled_space_is_built_by_its_seed():
     assert "3 airfoils, 20 CST perturbations" in first.about
 
 
-@pytest.mark.parametrize("count", [1000])
-def test_the_bundled_space_can_be_built_again(count):
-    space, residuals = build_space(baselines(), seed=2022, count=count)
+@pytest.mark.nightly
+def test_the_bundled_space_can_be_built_again():
+    space, residuals = build_space(baselines(), seed=2022, count=1000)
     bundled = ShapeSpace.bundled()
     assert_allclose(space.variances[:8], bundled.variances[:8], rtol=1e-6)
     assert_allclose(space.coordinates, bundled.coordinates, atol=1e-7)

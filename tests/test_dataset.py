@@ -23,10 +23,11 @@ from bladegen.families.dataset import graphs
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
 from bladegen.families.order import Order
 from bladegen.families.run import run
-from bladegen.formats.bundled import bundled
+from strategies import by_day
 
 OLD = Path(__file__).parent / "version_1_family"  # by bladegen 1.0.0 itself, nrel5mw
 COUNT, SPANS = 70, 16  # more than a shard
+NIGHT = pytest.mark.nightly
 BOUNDS = {"twist": (-0.02, 0.03), "thickness": (0.9, 1.1)}
 
 
@@ -132,7 +133,7 @@ def test_baselines_and_spaces_of_ones_own(tmp_path):
     assert_allclose(family[1].sections([0.7]), made[1].sections([0.7]), rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", bundled())
+@pytest.mark.parametrize("name", by_day("nrel5mw"))
 def test_settings_of_a_bundled_baseline_are_found_again(name, tmp_path):
     blade = bg.Blade.from_definition(bg.read(name), landmarks=61, path="geodesic").mirror_image()
     made = bg.family(blade, count=1, spans=16, bounds={"chord": (0.95, 1.0)}, design="box")
@@ -336,12 +337,18 @@ def same_families(one, two):
         assert a.identical(b)
 
 
-@pytest.mark.parametrize("counts", [(5, COUNT), (64, COUNT), (1, 66, COUNT)])
+@pytest.mark.parametrize(
+    "counts",
+    [pytest.param((5, COUNT), marks=NIGHT), pytest.param((64, COUNT), marks=NIGHT), (1, 66, COUNT)],
+)
 def test_a_family_that_is_added_to_is_the_one_made_at_once(folder, planned, tmp_path, counts):
     same_families(grown(planned, tmp_path / "grown", *counts), folder)
 
 
-@pytest.mark.parametrize("last", ["_keep_parts", "replacing", "settle", "resize"])
+@pytest.mark.parametrize(
+    "last",
+    ["replacing", *(pytest.param(n, marks=NIGHT) for n in ("_keep_parts", "settle", "resize"))],
+)
 def test_adding_goes_on_wherever_it_was_killed(folder, planned, tmp_path, monkeypatch, last):
     target = grown(planned, tmp_path / "killed", 66)
 

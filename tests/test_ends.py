@@ -10,11 +10,10 @@ from bladegen.airfoils.landmarks import landmark_parameters
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import Sharp
 from bladegen.cad import solids
-from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.surface import deviation, ends, fitting
 from bladegen.surface.tips import flat_tip, on_arcs, round_tip
-from strategies import net_through
+from strategies import by_day, net_through
 
 BLADE = Blade.from_definition(read("dtu10mw"), landmarks=101)
 NET, DEVIATION = fitting.fitted(BLADE, 1e-3)
@@ -29,7 +28,7 @@ def moved(rows, columns, shift):
 
 
 @pytest.mark.parametrize("tip", [flat_tip, round_tip])
-@pytest.mark.parametrize("name", bundled())
+@pytest.mark.parametrize("name", by_day("iea15mw"))
 def test_every_face_of_a_solid_is_measured(name, tip):
     solid = solids.solid(Blade.from_definition(read(name), landmarks=201), tolerance=1e-3, tip=tip)
     assert list(solid.deviation.faces) == [face for face, _ in solid.faces]

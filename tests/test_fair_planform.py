@@ -15,14 +15,14 @@ from bladegen.definition.fair_planform import fair_planform, faired
 from bladegen.errors import BladegenError, DefinitionError
 from bladegen.exports.provenance import blade_settings
 from bladegen.formats.common.redefinition import TOLERANCE, redefined
-from strategies import definitions
+from strategies import by_day, definitions, few
 
 FAIRING = bg.PlanformFairing()
 SPANS = np.linspace(0.0, 1.0, 4001)
 BOUND = 1e-3
 
 
-@pytest.fixture(scope="module", params=bg.bundled())
+@pytest.fixture(scope="module", params=by_day("iea15mw"))
 def pair(request):
     definition = bg.read(request.param)
     return definition, fair_planform(definition, FAIRING)
@@ -88,7 +88,7 @@ def test_the_finding_says_by_how_much_it_moved(pair):
     assert_allclose(figure, moved, rtol=0.06)
 
 
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None, max_examples=few(12))
 @given(
     st.lists(st.floats(0.1, 1.0), min_size=1, max_size=12),
     st.lists(st.floats(-1.0, 1.0), min_size=13, max_size=13),
@@ -118,7 +118,7 @@ def test_any_distribution_is_held_and_no_knot_can_make_it_fairer_by_2_percent(st
                 assert energy(other) >= 0.98 * least
 
 
-@settings(deadline=None, max_examples=10)
+@settings(deadline=None, max_examples=few(10))
 @given(definitions())
 def test_any_definition_can_be_faired(definition):
     fair = fair_planform(definition, FAIRING)

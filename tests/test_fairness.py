@@ -19,7 +19,7 @@ from bladegen.errors import BladegenError, RenderError
 from bladegen.measures import checks, fairness
 from bladegen.surface import mesh
 from bladegen.views import zebra
-from strategies import circle
+from strategies import by_day, circle
 
 ETA = np.linspace(0.02, 0.98, 25)
 U = fairness.LINES
@@ -103,7 +103,7 @@ def test_a_jump_of_curvature_is_found_where_it_is_and_as_large():
     assert_allclose(jump, bend / LENGTH**2, rtol=2e-2)
 
 
-@pytest.mark.parametrize("name", bg.bundled())
+@pytest.mark.parametrize("name", by_day("iea15mw"))
 def test_a_fair_planform_takes_the_jumps_of_curvature_away(name):
     given, fair = (
         fairness.fairness(

@@ -5,6 +5,7 @@ import pytest
 
 import bladegen as bg
 from bladegen.errors import FamilyError
+from bladegen.exports.options import Options
 from bladegen.families import forecasts
 from bladegen.families.forecasts import Forecast, duration, free_bytes, require_room, size
 from bladegen.families.order import Order
@@ -17,7 +18,7 @@ BYTES = 16 * 51 * 3 * 4  # of a variant's sections
 def order(folder, count, *formats):
     bounds = {"thickness": (0.95, 1.05)}
     family = bg.family(BLADE, None, count=count, bounds=bounds, spans=16)
-    return Order(family, folder, formats)
+    return Order(family, folder, formats, options=Options(stations=30))
 
 
 def with_free(monkeypatch, count):

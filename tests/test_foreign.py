@@ -65,7 +65,7 @@ def test_what_is_no_such_file_is_refused_in_a_line(suffix, spoil, tmp_path, fork
     assert len(str(refusal.value)) < 700
 
 
-@pytest.mark.parametrize("count", [16, pytest.param(40, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("count", [6, pytest.param(40, marks=pytest.mark.nightly)])
 def test_damaged_files_end_well(count):
     tally = fuzz(foreign_fuzzing.TARGETS, seed=14, count=count)
     assert tally.failures == []

@@ -21,7 +21,7 @@ from bladegen.support import archive
 from strategies import few, naca
 
 
-@pytest.mark.parametrize("count", [100, pytest.param(2000, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("count", [40, pytest.param(2000, marks=pytest.mark.nightly)])
 def test_bad_inputs_end_well(count):
     tally = fuzz(TARGETS, seed=2026, count=count)
     assert tally.failures == []
@@ -186,15 +186,15 @@ def exploded() -> bytes:
 GRID = [0.0, 0.5, 1.0]
 CHORD, TWIST = (*SHAPE, "chord"), (*SHAPE, "twist")
 NAN = float("nan")
-MILLION = 1_000_000
+MANY = 100_000
 BLADES = {
     "yaml bomb": (bomb(), "holds no blade"),
     "yaml bomb for numbers": (exploded(), "chord"),
     "brackets": (b"[" * 1_000_000, "nest"),
     "python object": (b"!!python/object/apply:os.system ['touch x']", "tag"),
-    "a million points": (
-        contour(x=lambda _: "MANY").replace(b'"MANY"', b"[" + b"0.5, " * MILLION + b"1.0]"),
-        "has 1000001 entries, allowed are 1 to 100000",
+    "too many points": (
+        contour(x=lambda _: "MANY").replace(b'"MANY"', b"[" + b"0.5, " * MANY + b"1.0]"),
+        "has 100001 entries, allowed are 1 to 100000",
     ),
     "99,999 points": (
         contour(
@@ -273,8 +273,8 @@ def rows(points: np.ndarray) -> bytes:
 
 
 AIRFOILS = {
-    "a million points": (b"1.0 0.0\n" * 120_000, "points, allowed are 10 to 5000"),
-    "too large a file": (b"1.0 0.0\n" * MILLION, "is larger than 1000000 bytes"),
+    "too many points": (b"1.0 0.0\n" * 120_000, "points, allowed are 10 to 5000"),
+    "too large a file": (b"1.0 0.0\n" * 2 * MANY, "is larger than 1000000 bytes"),
     "nan": (b"foil\n" + b"1 0\n" * 9 + b"nan nan\n1 0\n", "must be finite"),
     "infinity": (b"foil\n" + b"1 0\n" * 9 + b"inf 0\n1 0\n", "must be finite"),
     "crossing": (rows(np.where(np.arange(59)[:, None] == 12, [0.7, -0.5], FOIL)), "crosses itself"),

@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.errors import GeometryError
-from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.surface import mesh
 from bladegen.surface.grids.grid import Spacing, from_blade
@@ -23,13 +22,13 @@ from bladegen.surface.grids.grid_quality import (
     stretching,
 )
 from bladegen.surface.tips import arcs, flat_tip, on_arcs, round_tip
-from strategies import definitions, few
+from strategies import by_day, definitions, few
 
 TIPS = flat_tip, round_tip
 SMALL = Spacing(around=65, along=17, edge=4, leading_edge=5e-3, trailing_edge=5e-3, tip=0.01)
 
 
-@pytest.fixture(scope="module", params=bundled())
+@pytest.fixture(scope="module", params=by_day("iea15mw"))
 def blade(request):
     return Blade.from_definition(read(request.param))
 

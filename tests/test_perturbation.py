@@ -146,8 +146,8 @@ def test_a_perturbed_blade_is_a_blade_like_any_other(blades, tmp_path):
     assert check.problems == ()
     assert check.figures["thickness_error"] < 1e-9
     assert check.figures["stations_missed_by_chord"] < 1e-9
-    solid = solids.solid(variant)
-    assert solid.deviation.maximum < 0.3e-3
+    solid = solids.solid(variant, tolerance=2e-3)
+    assert solid.deviation.maximum < 2e-3
     again = variant.perturbed(twist_scale=1.1)
     assert len(again.changes) == 2
     assert_allclose(again.profiles(SPANS), variant.profiles(SPANS), atol=1e-12)

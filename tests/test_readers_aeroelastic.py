@@ -12,7 +12,7 @@ import bladegen as bg
 from bladegen.errors import FileError
 from bladegen.formats.common import text_file
 from bladegen.formats.hawc2.model import finder
-from strategies import tenth
+from strategies import STEADY, tenth
 
 
 def edit(path: Path, old: str, new: str, count: int = 1) -> Path:
@@ -315,7 +315,7 @@ def test_damaged_files_are_refused_with_a_line_of_their_own(tmp_path, format_):
     damaged = made if format_ != "index" else tmp_path / "blade_csv_airfoils" / "index.csv"
     lines = damaged.read_text().splitlines()
     refused: list[str] = []
-    for _ in range(40):
+    for _ in range(20 if STEADY else 40):
         broken = list(lines)
         for k in rng.integers(0, len(broken), 3):
             mark = "," if damaged.suffix == ".csv" else " "
@@ -327,5 +327,5 @@ def test_damaged_files_are_refused_with_a_line_of_their_own(tmp_path, format_):
             bg.read(made)
         except FileError as error:
             refused.extend(error.problems)
-    assert len(refused) > 10
+    assert len(refused) > (3 if STEADY else 10)
     assert not any("\n" in problem for problem in refused)

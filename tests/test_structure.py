@@ -12,6 +12,7 @@ from bladegen.definition.structure.structure import Layer, Material, Structure, 
 from bladegen.errors import DefinitionError
 from bladegen.formats.common.document import Node, Notes
 from bladegen.formats.windio.structure import reading1, reading2
+from strategies import STEADY
 
 DELETE = object()
 GRID = [0.0, 0.5, 1.0]
@@ -361,7 +362,7 @@ def leaves(value, path=()):
 @pytest.mark.parametrize("junk", [None, "x", -1e300, {}, [{}], DELETE])
 def test_nothing_in_a_structure_refuses_a_file(version, junk):
     whole = WAYS[version]
-    for path in leaves(whole):
+    for path in list(leaves(whole))[:: 4 if STEADY else 1]:
         document = deepcopy(whole)
         holder = {"all": document}
         place, last = holder, "all"

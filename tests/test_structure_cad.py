@@ -130,6 +130,7 @@ def test_bays_end_where_webs_do_and_lines_do_not_cross(made):
         assert all(0 < a < bay.nose < b for a, b in bay.feet.values())
 
 
+@pytest.mark.nightly
 def test_a_mirror_image_has_the_same_zones(made):
     blade, _, parts = made
     other = blade.mirror_image()

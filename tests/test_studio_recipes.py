@@ -77,10 +77,10 @@ def test_the_command_makes_the_same_blade(baseline, tmp_path):
     words = shlex.split(shell(state, ENTRY, baseline.stem(state)))
     assert words[0] == "bladegen"
     words[words.index("out/")] = str(tmp_path)
-    done = CliRunner().invoke(commands.app, [*words[1:], "--format", "stl", "--stations", "60"])
+    done = CliRunner().invoke(commands.app, [*words[1:], "--format", "stl", "--stations", "30"])
     assert done.exit_code == 0, done.output
     made = checks.check_file(tmp_path / f"{baseline.stem(state)}.stl").figures
-    own = bg.export(baseline.variant(state), tmp_path / "own.stl", stations=60)
+    own = bg.export(baseline.variant(state), tmp_path / "own.stl", stations=30)
     assert made["volume"] == pytest.approx(checks.check_file(own).figures["volume"], rel=1e-6)
 
 

@@ -91,7 +91,7 @@ def test_a_rule_that_is_written_is_the_rule():
     assert ruled(given) is given
 
 
-@pytest.mark.parametrize("case", ["pitch axis", "offset"])
+@pytest.mark.parametrize("case", ["offset", pytest.param("pitch axis", marks=pytest.mark.nightly)])
 def test_a_definition_is_the_same_blade_in_every_pair_of_formats(tmp_path, case):
     definition = CASES[case]
     wanted = sections(definition)

@@ -6,10 +6,9 @@ from numpy.testing import assert_allclose
 
 from bladegen.blade.blade import Blade
 from bladegen.cad import solids
-from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.surface.tips import arcs, flat_tip, on_arcs, round_tip
-from strategies import SEEDS, definitions
+from strategies import SEEDS, by_day, definitions
 
 W = np.linspace(0.0, 1.0, 9)
 
@@ -59,7 +58,7 @@ def test_arcs_of_a_blade_start_on_its_last_section(definition):
     assert_allclose(poles[-1], np.broadcast_to(last[25], (4, 3)), atol=1e-9)
 
 
-@pytest.mark.parametrize("name", bundled())
+@pytest.mark.parametrize("name", by_day("iea15mw"))
 def test_arcs_lie_on_the_solid_s_tip(name):
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
     from OCP.BRepExtrema import BRepExtrema_DistShapeShape

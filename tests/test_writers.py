@@ -19,7 +19,7 @@ from bladegen.formats.common.redefinition import redefined
 from bladegen.formats.into import write_into
 from bladegen.formats.windio import turbine_file
 from bladegen.formats.windio.yaml_file import load_yaml
-from strategies import airfoils, definitions, few, naca
+from strategies import airfoils, by_day, definitions, few, naca
 
 ETA = np.linspace(0.0, 1.0, 401)
 WINDIO = ("windio2", "windio1")
@@ -293,7 +293,7 @@ def test_a_file_that_is_no_turbine_takes_no_blade(tmp_path, content, said):
 # ---- the windIO package as an oracle ----------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["nrel5mw", "iea15mw", "dtu10mw"])
+@pytest.mark.parametrize("name", by_day("iea15mw"))
 def test_what_is_written_passes_the_schema_of_windio(tmp_path, name):
     windio = pytest.importorskip("windIO")
     path = tmp_path / "two.yaml"

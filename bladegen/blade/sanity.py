@@ -19,6 +19,7 @@ from bladegen.support.arrays import Array, Indices
 
 __all__ = [
     "CHARACTERISTICS",
+    "FIGURES",
     "KINDS",
     "ODD",
     "Oddities",
@@ -48,6 +49,8 @@ KINDS = (
     "has another camber",
     "has a drooped tail",
 )
+# what `KINDS` from 1 on are judged by: angles [deg], radii over the one before, camber [chord]
+FIGURES = ("notch", "radius", "radius", "suction_bends", "pressure_bends", "camber", "tail")
 SMALLER = 2  # of `KINDS`: here the figure is too small, elsewhere too large
 
 
@@ -75,7 +78,7 @@ class Oddities:
     kinds : (...) array of int
         Places in `KINDS`, the first that applies; 0 where nothing is odd.
     figures, limits : (..., 7) arrays
-        The figures that `KINDS` from 1 on are judged by, and what is allowed.
+        `FIGURES`, and what is allowed.
     """
 
     kinds: Indices

@@ -13,6 +13,7 @@ from bladegen.formats.common.document import Notes
 from bladegen.formats.format import Reader
 from bladegen.formats.registry import FORMATS, every, plugins
 from bladegen.support.arguments import path_of, shown, suggestion
+from bladegen.support.recent import Recent
 
 __all__ = ["SUFFIXES", "holds_blade", "is_read", "read"]
 
@@ -25,6 +26,7 @@ BY_AIRFOILS = Finding(
 FEW, MANY = 3, 1000  # files of a folder that are named, and looked at
 OWN = tuple(row.reader for row in FORMATS if row.reader is not None)
 SUFFIXES = tuple(dict.fromkeys(suffix for reader in OWN for suffix in reader.suffixes))
+BUNDLED: Recent[BladeDefinition] = Recent(8)  # a definition never changes: read once is enough
 
 
 def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefinition:
@@ -50,6 +52,15 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
         if not airfoils.is_dir():
             raise FileError(str(airfoils), ["is no folder, must be one of airfoil files"])
     path = _path(source)
+    if airfoils is not None or path.parent != home():
+        return _read(source, path, airfoils)
+    file = path.stat()
+    key = f"{path} {file.st_mtime_ns} {file.st_size}".encode()
+    return BUNDLED.get(key, lambda: _read(source, path, None))
+
+
+def _read(source: str | Path, path: Path, airfoils: Path | None) -> BladeDefinition:
+    """Read a definition's file, with what is known of it before it becomes a blade."""
     notes = Notes()
     try:
         name, reader = _recognised(path)

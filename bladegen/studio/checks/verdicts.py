@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladegen.blade.sanity import KINDS, NOTCH, RADIUS, ROUND, Oddities
+from bladegen.blade.sanity import FIGURES, KINDS, NOTCH, RADIUS, ROUND, Oddities
 from bladegen.blade.variants.batch import FAULTS, Batch
 from bladegen.blade.variants.verdicts import THINNEST
 from bladegen.shapes.domain import Domain
@@ -26,9 +26,7 @@ HOLLOW = 3.0, 8.0
 LEAST = 0.05  # deg, which is no concavity
 JUDGED = 0.45  # of the chord: thicker sections are on the way to a circle
 SIDES = "suction", "pressure"
-NOTCHED = 0  # the figure of `Oddities` that may be `NOTCH` more than before
-GROWING = {NOTCHED: "hollow nose", 5: "camber", 6: "tail"}  # those that grow with a change
-SHARE = 1  # the figure of `Oddities` that is the nose's radius over the one before
+GROWING = {"notch": "hollow nose", "camber": "camber", "tail": "tail"}  # `FIGURES` a change adds to
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +118,7 @@ def _in_data(found: Measured) -> Check:
 
 
 def _nose(found: Measured) -> Check:
-    share = found.odd.figures[0, :, SHARE]
+    share = found.odd.figures[0, :, FIGURES.index("radius")]
     thickness = found.batch.relative_thickness[0]
     share = np.where((thickness <= ROUND) & (share > 0.0), share, 1.0)
     worst = int(np.argmax(np.abs(np.log(share))))
@@ -151,9 +149,10 @@ def _airfoils(found: Measured) -> Check:
     if strange.size:
         return Check("odd", "Airfoils", f"{KINDS[odd.kinds[0, strange[0]]]} {found.at(strange[0])}")
     judged = found.batch.relative_thickness[0] <= ROUND
-    allowed = np.where(np.arange(odd.limits.shape[-1]) == NOTCHED, np.degrees(NOTCH), odd.limits[0])
+    # a nose may turn back by `NOTCH` more than before; the others' limits are such changes
+    allowed = np.where(np.array(FIGURES) == "notch", np.degrees(NOTCH), odd.limits[0])
     way = 1.0 - (odd.limits[0] - odd.figures[0]) / allowed
-    share = way[:, list(GROWING)] * judged[:, None]
+    share = way[:, [FIGURES.index(name) for name in GROWING]] * judged[:, None]
     worst, which = np.unravel_index(np.argmax(share), share.shape)
     if share[worst, which] > NEAR:
         name = list(GROWING.values())[which]

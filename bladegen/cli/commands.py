@@ -39,7 +39,7 @@ SUMMARIES = {
     "plot": "Draw diagrams of a blade.",
     "studio": "See a blade in the browser and play with it: sliders, checks, exports.",
     "space": "Make and look at shape spaces.",
-    "case": "Write cases that flow solvers run: the flow around a section, for OpenFOAM.",
+    "case": "Write cases that OpenFOAM runs: a rotor, or the flow around a section.",
 }
 CONTEXT = {"help_option_names": ["-h", "--help"]}
 

@@ -2,5 +2,6 @@
 
 In comes a blade, a span fraction and what flows there; out goes a folder that OpenFOAM runs as it
 is, with the commands to type.  A section's mesh is an O-grid (`outline`, `marching`, `poly_mesh`);
-another solver's files are modules beside `dictionaries`, another flow one beside `section`.
+another solver's files are modules beside `dictionaries`, another flow one beside
+`section`; a rotor, which OpenFOAM meshes, is a room of its own (`rotors`).
 """

@@ -12,7 +12,7 @@ from bladegen.exports.cases.conditions import Conditions
 from bladegen.exports.cases.poly_mesh import FAR, PLANES
 from bladegen.support.foam import number, vector
 
-__all__ = ["BLADE", "constant", "fields", "system"]
+__all__ = ["BLADE", "DIMENSIONS", "constant", "fields", "fluid", "stepping", "system"]
 
 BLADE = "blade"  # the group of all walls
 QUARTER = 0.25  # chords; where moments are about
@@ -60,11 +60,13 @@ def fields(flow: Conditions) -> dict[str, tuple[str, dict[str, Any]]]:
 
 def constant(flow: Conditions) -> dict[str, dict[str, Any]]:
     """Return what the fluid is, and its model of turbulence."""
+    return fluid(flow.viscosity)
+
+
+def fluid(viscosity: float) -> dict[str, dict[str, Any]]:
+    """Return what a fluid of a kinematic viscosity [m2/s] is, and its model of turbulence."""
     return {
-        "transportProperties": {
-            "transportModel": "Newtonian",
-            "nu": number(flow.viscosity),
-        },
+        "transportProperties": {"transportModel": "Newtonian", "nu": number(viscosity)},
         "turbulenceProperties": {
             "simulationType": "RAS",
             "RAS": {"RASModel": "kOmegaSST", "turbulence": "on", "printCoeffs": "on"},
@@ -86,7 +88,8 @@ def system(flow: Conditions, thickness: float, end: int) -> dict[str, dict[str, 
     }
 
 
-def _control(flow: Conditions, thickness: float, end: int) -> dict[str, Any]:
+def stepping(end: int) -> dict[str, Any]:
+    """Return the entries of controlDict but what is written at each iteration."""
     return {
         "application": "simpleFoam",
         "startFrom": "latestTime",
@@ -102,6 +105,11 @@ def _control(flow: Conditions, thickness: float, end: int) -> dict[str, Any]:
         "timeFormat": "general",
         "timePrecision": 8,
         "runTimeModifiable": "true",
+    }
+
+
+def _control(flow: Conditions, thickness: float, end: int) -> dict[str, Any]:
+    return stepping(end) | {
         "functions": {
             "forces": {
                 "type": "forceCoeffs",

@@ -4,8 +4,6 @@ The mesh is an O-grid around the section in metres, the chord line along x, writ
 mesher; the stream comes at the angle of attack.  Nothing of OpenFOAM is needed to write it.
 """
 
-import shutil
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,19 +12,17 @@ from pathlib import Path
 from typing import Any
 
 from bladegen.blade.blade import Blade
-from bladegen.errors import ExportError, GeometryError
-from bladegen.exports import marks
+from bladegen.errors import GeometryError
 from bladegen.exports.cases import dictionaries
 from bladegen.exports.cases.cell_measures import figures
 from bladegen.exports.cases.conditions import Conditions, flow_at
-from bladegen.exports.cases.guidance import RUN, allrun, readme
+from bladegen.exports.cases.folder import put, put_dictionaries, put_fields, put_run, written
+from bladegen.exports.cases.guidance import allrun, readme
 from bladegen.exports.cases.marching import marched
 from bladegen.exports.cases.outline import Outline, around
 from bladegen.exports.cases.poly_mesh import extruded, write_mesh
 from bladegen.exports.provenance import made_from
-from bladegen.support import files
 from bladegen.support.arrays import Array
-from bladegen.support.foam import dictionary
 from bladegen.support.values import brief
 from bladegen.surface.wall_spacing import first_height
 
@@ -45,7 +41,6 @@ TOLD = (
     "around",
     "growth",
 )
-OWN = ("0", "constant", "system", RUN, "README.md")
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +97,13 @@ class SectionCase:
             "first_height_mm": [1e3 * low, 1e3 * high],
         }
 
+    @property
+    def remarks(self) -> list[str]:
+        """What is to be said of the flow."""
+        if not self.flow.is_stalled:
+            return []
+        return ["most sections stall at this angle, and a steady run may not settle"]
+
     def write(self, folder: Path, *, command: str = "") -> None:
         """Write the case; what an earlier one of ours left in the folder is replaced.
 
@@ -110,41 +112,23 @@ class SectionCase:
         ExportError
             If the folder holds anything else, or cannot be written.
         """
-        _require_ours(folder)
-        target = files.folder(folder).resolve()
-        try:
-            with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as name:
-                draft = Path(name)
-                self._write(draft, command)
-                for part in OWN:
-                    there = target / part
-                    if there.is_dir():
-                        shutil.rmtree(there)
-                    (draft / part).replace(there)
-        except OSError as error:
-            raise ExportError(f"{folder}: cannot be written: {error.strerror or error}") from None
+        written(folder, lambda draft: self._write(draft, command))
 
     def _write(self, draft: Path, command: str) -> None:
         told = {name: f"{self.figures[name]:.9g}" for name in TOLD} | {"end": str(self.end)}
         made = made_from(self.blade, told, command).text
         note = f"{self.blade.name}, {100.0 * self.eta:g} % span; README.md says how it was made"
         thickness = SLAB * self.flow.chord
-        for name, (kind, entries) in dictionaries.fields(self.flow).items():
-            _put(draft / "0" / name, dictionary(name, entries, kind=kind, note=note))
-        parts = {
-            "constant": dictionaries.constant(self.flow),
-            "system": dictionaries.system(self.flow, thickness, self.end),
-        }
-        for part, held in parts.items():
-            for name, entries in held.items():
-                _put(draft / part / name, dictionary(name, entries, note=note))
+        put_fields(draft, dictionaries.fields(self.flow), note)
+        put_dictionaries(draft / "constant", dictionaries.constant(self.flow), note)
+        system = dictionaries.system(self.flow, thickness, self.end)
+        put_dictionaries(draft / "system", system, note)
         home = draft / "constant" / "polyMesh"
         home.mkdir()
         mesh = extruded(self.layers, thickness, self.outline.sides)
         write_mesh(mesh, home, group=dictionaries.BLADE)
-        _put(draft / "README.md", readme(self.blade.name, self.figures, self.flow, self.end, made))
-        _put(draft / RUN, allrun())
-        (draft / RUN).chmod(0o755)
+        put(draft / "README.md", readme(self.blade.name, self.figures, self.flow, self.end, made))
+        put_run(draft, allrun())
 
 
 def section_case(
@@ -197,25 +181,3 @@ def section_case(
     progress("marching the mesh")
     layers = marched(outline.points, height, growth, radius * flow.chord)
     return SectionCase(blade, eta, flow, outline, layers, y_plus, growth, radius, end)
-
-
-def _require_ours(folder: Path) -> None:
-    """See that a folder is missing, empty, or holds a case of ours that has not been run."""
-    if not folder.is_dir() or not any(folder.iterdir()):
-        return
-    ours = (folder / "system" / "controlDict").is_file() and marks.read(folder / "README.md")
-    if not ours:
-        raise ExportError(
-            f"{folder}: holds other files; a case needs a folder of its own, such as "
-            f"-o {folder / 'case'}"
-        )
-    if any(file.is_dir() and file.name not in OWN for file in folder.iterdir()):
-        raise ExportError(
-            f"{folder}: holds the results of a run; remove it, or take another folder, such as "
-            f"-o {folder.parent / f'{folder.resolve().name}2'}"
-        )
-
-
-def _put(path: Path, text: str) -> None:
-    path.parent.mkdir(exist_ok=True)
-    path.write_text(text, encoding="utf-8")

@@ -1,0 +1,190 @@
+"""OpenFOAM's dictionaries of a rotor in steady wind: k-omega SST, solved by simpleFoam.
+
+All cells turn with the blade: velocities are those of the frame at rest, and the equations have the
+terms of a frame that turns (MRF), so that the flow around the blade is steady.  Only the blade's
+patches turn; the cylinder at the hub and the far one let air slip along them.
+"""
+
+from typing import Any
+
+from bladegen.definition.estimates import AIR
+from bladegen.exports.cases import dictionaries
+from bladegen.exports.cases.dictionaries import BLADE, DIMENSIONS
+from bladegen.exports.cases.rotors.blocks import FAR, HUB, INLET, OUTLET, SIDES, ZONE
+from bladegen.exports.cases.rotors.operation import DENSITY, Operation
+from bladegen.support.foam import number, vector
+
+__all__ = ["constant", "fields", "system"]
+
+EDDIES = 10.0  # of the viscosity, in the wind
+BEGUN = 1000.0  # where a run begins: walls at rest in still air leave pressure nothing to hold
+OMEGA = 5.0  # wind speeds over the reference chord, see `conditions.OMEGA`
+
+
+def turbulence(flow: Operation) -> tuple[float, float]:
+    """Return kinetic energy [m2/s2] and specific dissipation rate [1/s] of the wind."""
+    omega = OMEGA * flow.section_speed / flow.chord
+    return EDDIES * AIR * omega, omega
+
+
+def fields(flow: Operation) -> dict[str, tuple[str, dict[str, Any]]]:
+    """Return class and entries of the fields that a run begins with."""
+    kinetic, omega = turbulence(flow)
+    begun = {"k": number(BEGUN * AIR * omega), "nut": number(BEGUN * AIR)}
+    given: dict[str, tuple[str, dict[str, Any]]] = {  # the value in the wind, on the blade
+        "U": (vector((flow.wind, 0.0, 0.0)), {"type": "noSlip"}),
+        "p": ("0", {"type": "zeroGradient"}),
+        "k": (number(kinetic), {"type": "kqRWallFunction", "value": f"uniform {number(kinetic)}"}),
+        "omega": (
+            number(omega),
+            {"type": "omegaWallFunction", "value": f"uniform {number(omega)}"},
+        ),
+        "nut": (
+            number(kinetic / omega),
+            {"type": "nutUSpaldingWallFunction", "value": "uniform 0"},
+        ),
+    }
+    made = {}
+    for name, (value, wall) in given.items():
+        uniform = f"uniform {value}"
+        fixed = {"type": "fixedValue", "value": uniform}
+        free = {"type": "inletOutlet", "inletValue": uniform, "value": uniform}
+        ends = {
+            "U": (fixed, free),
+            "p": ({"type": "zeroGradient"}, fixed),
+            "nut": 2 * ({"type": "calculated", "value": uniform},),
+        }.get(name, (fixed, free))
+        made[name] = (
+            "volVectorField" if name == "U" else "volScalarField",
+            {
+                "dimensions": DIMENSIONS[name],
+                "internalField": f"uniform {begun.get(name, value)}",
+                "boundaryField": {
+                    BLADE: wall,
+                    INLET: ends[0],
+                    OUTLET: ends[1],
+                    **{slip: {"type": "slip"} for slip in (FAR, HUB)},
+                    **{side: {"type": "cyclic"} for side in SIDES},
+                },
+            },
+        )
+    return made
+
+
+def constant(flow: Operation, sense: float) -> dict[str, dict[str, Any]]:
+    """Return what the fluid is, its model of turbulence, and how cells turn about x (sense +-1)."""
+    return dictionaries.fluid(AIR) | {
+        "MRFProperties": {
+            "turning": {
+                "cellZone": ZONE,
+                "active": "yes",
+                "nonRotatingPatches": (INLET, OUTLET, FAR, HUB),
+                "origin": (0, 0, 0),
+                "axis": (1, 0, 0),
+                "omega": sense * flow.speed,
+            },
+        },
+    }
+
+
+def system(flow: Operation, sense: float, blades: int, end: int) -> dict[str, dict[str, Any]]:
+    """Return how the equations are solved and what is written."""
+    return {
+        "controlDict": _control(flow, sense, blades, end),
+        "fvSchemes": _schemes(),
+        "fvSolution": _solution(),
+        "decomposeParDict": {
+            "numberOfSubdomains": 2,
+            "method": "simple",
+            "coeffs": {"n": (1, 1, 2)},  # along the blade
+        },
+    }
+
+
+def _control(flow: Operation, sense: float, blades: int, end: int) -> dict[str, Any]:
+    every = {"writeControl": "timeStep", "writeInterval": 1, "log": "false"}
+    about = {
+        "libs": ('"libforces.so"',),
+        "patches": (BLADE,),
+        "rho": "rhoInf",
+        "rhoInf": DENSITY,
+        "CofR": (0, 0, 0),
+    }
+    return dictionaries.stepping(end) | {
+        "functions": {
+            "forces": {"type": "forces", **about, **every},
+            "coefficients": {  # Cd is the thrust coefficient, CmPitch that of the torque
+                "type": "forceCoeffs",
+                **about,
+                "magUInf": flow.wind,
+                "lRef": flow.radius,
+                "Aref": 3.14159265 * flow.radius**2 / blades,
+                "dragDir": (1, 0, 0),
+                "liftDir": (0, 0, 1),
+                "pitchAxis": (sense, 0, 0),
+                **every,
+            },
+            "yPlus": {
+                "type": "yPlus",
+                "libs": ('"libfieldFunctionObjects.so"',),
+                "writeControl": "writeTime",
+            },
+            "residuals": {
+                "type": "solverInfo",
+                "libs": ('"libutilityFunctionObjects.so"',),
+                "fields": ("U", "p", "k", "omega"),
+            },
+        },
+    }
+
+
+def _schemes() -> dict[str, Any]:
+    limited = "cellLimited Gauss linear 1"
+    return {
+        "ddtSchemes": {"default": "steadyState"},
+        "gradSchemes": {
+            "default": "Gauss linear",
+            "grad(U)": limited,
+            "grad(k)": limited,
+            "grad(omega)": limited,
+        },
+        "divSchemes": {
+            "default": "none",
+            "div(phi,U)": "bounded Gauss linearUpwind grad(U)",
+            "div(phi,k)": "bounded Gauss upwind",
+            "div(phi,omega)": "bounded Gauss upwind",
+            "div((nuEff*dev2(T(grad(U)))))": "Gauss linear",
+        },
+        "laplacianSchemes": {"default": "Gauss linear limited corrected 0.5"},
+        "interpolationSchemes": {"default": "linear"},
+        "snGradSchemes": {"default": "limited corrected 0.5"},
+        "wallDist": {"method": "meshWave"},
+    }
+
+
+def _solution() -> dict[str, Any]:
+    return {
+        "solvers": {
+            "p": {
+                "solver": "GAMG",
+                "smoother": "GaussSeidel",
+                "tolerance": 1e-10,
+                "relTol": 0.05,
+            },
+            '"(U|k|omega)"': {
+                "solver": "smoothSolver",
+                "smoother": "symGaussSeidel",
+                "tolerance": 1e-12,
+                "relTol": 0.1,
+            },
+        },
+        "SIMPLE": {
+            "consistent": "no",
+            "nNonOrthogonalCorrectors": 0,
+            "residualControl": {'"(p|U|k|omega)"': 1e-6},
+        },
+        "relaxationFactors": {
+            "fields": {"p": 0.3},
+            "equations": {"U": 0.6, '"(k|omega)"': 0.5},
+        },
+    }

@@ -21,6 +21,7 @@ from bladegen.errors import BladegenError, GeometryError
 from bladegen.exports import marks
 from bladegen.exports.cases.rotors.meshing import Layers
 from bladegen.exports.cases.rotors.operation import operation_of
+from bladegen.exports.cases.rotors.placing import nose
 from bladegen.exports.cases.rotors.rotor import rotor_case
 from bladegen.exports.cases.rotors.sector import ending, growing
 
@@ -146,6 +147,25 @@ def test_the_blade_stands_in_the_sector_with_its_root_in_the_hub(written, blocks
     assert inside[0] < points[:, 0].min()
     assert set(snappy["geometry"]["blade.obj"]["regions"]) == set(groups)
     assert set(snappy["addLayersControls"]["layers"]) <= set(groups)
+
+
+def test_cells_are_finer_at_the_noses_of_airfoils(written):
+    made = case()
+    part = nose(blade(), made.surface)
+    snappy = parsed((written / "system/snappyHexMeshDict").read_text())
+    regions = snappy["castellatedMeshControls"]["refinementRegions"]
+    ((_, finer),) = regions["leading_edge"]["levels"]
+    ((near, level),) = regions["blade"]["levels"]
+    assert (finer, level) == (made.level + 1, made.level)
+    assert near > made.layers.height
+    assert (written / "constant/triSurface/leading_edge.obj").read_text().count("\nf ") == len(
+        part.faces
+    )
+    index = {point: i for i, point in enumerate(map(tuple, made.surface.vertices.tolist()))}
+    eta, u = made.surface.places[[index[point] for point in map(tuple, part.vertices.tolist())]].T
+    assert blade().relative_thickness(eta).max() < 0.6
+    assert 0.0 < np.abs(u - 0.5).max() < 0.1
+    assert eta.max() == 1.0
 
 
 def test_fields_name_all_patches_and_the_wind(written):

@@ -16,7 +16,7 @@ from bladegen.support.foam import number, vector
 
 __all__ = ["constant", "fields", "system"]
 
-EDDIES = 10.0  # of the viscosity, in the wind
+EDDIES = 100.0  # of the viscosity, in the wind
 BEGUN = 1000.0  # where a run begins: walls at rest in still air leave pressure nothing to hold
 OMEGA = 5.0  # wind speeds over the reference chord, see `conditions.OMEGA`
 

@@ -14,9 +14,10 @@ from bladegen.support.arrays import Array
 from bladegen.surface.mesh_files import region_word
 from bladegen.surface.regions import PRESSURE, SUCTION
 
-__all__ = ["SURFACE", "Layers", "snappy"]
+__all__ = ["EDGE", "SURFACE", "Layers", "snappy"]
 
-SURFACE = "blade.obj"  # in constant/triSurface
+SURFACE, EDGE = "blade.obj", "leading_edge.obj"  # in constant/triSurface
+ROUNDED = 0.75  # surface cells from the leading edge, within which they are halved once more
 LAYERED = (SUCTION, PRESSURE)
 BETWEEN = 3  # cells between levels
 NEAR = 2.0  # surface cells, within which all are as small: layers end where sizes change
@@ -63,7 +64,7 @@ def snappy(
     Parameters
     ----------
     level : int
-        Halvings of background cells on the blade.
+        Halvings of background cells on the blade, one less than at its leading edge.
     size : float
         Of cells there [m].
     layers : Layers
@@ -83,6 +84,7 @@ def snappy(
                 "name": BLADE,
                 "regions": {name: {"name": name} for name in names},
             },
+            EDGE: {"type": "triSurfaceMesh", "name": "leading_edge"},
         },
         "castellatedMeshControls": {
             "maxLocalCells": 100_000_000,
@@ -100,6 +102,7 @@ def snappy(
             "resolveFeatureAngle": 45,
             "refinementRegions": {
                 BLADE: {"mode": "distance", "levels": ((NEAR * size, level),)},
+                "leading_edge": {"mode": "distance", "levels": ((ROUNDED * size, level + 1),)},
             },
             "locationInMesh": tuple(inside.tolist()),
             "allowFreeStandingZoneFaces": "false",

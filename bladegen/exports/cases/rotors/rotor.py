@@ -21,9 +21,9 @@ from bladegen.exports.cases.folder import put, put_dictionaries, put_fields, put
 from bladegen.exports.cases.rotors import dictionaries
 from bladegen.exports.cases.rotors.blocks import block_mesh
 from bladegen.exports.cases.rotors.guidance import allrun, readme
-from bladegen.exports.cases.rotors.meshing import SURFACE, Layers, snappy
+from bladegen.exports.cases.rotors.meshing import EDGE, SURFACE, Layers, snappy
 from bladegen.exports.cases.rotors.operation import TURN, Operation, operation_of
-from bladegen.exports.cases.rotors.placing import radii, require_clear, standing
+from bladegen.exports.cases.rotors.placing import nose, radii, require_clear, standing
 from bladegen.exports.cases.rotors.sector import Sector
 from bladegen.exports.provenance import made_from
 from bladegen.support.arrays import Array
@@ -174,7 +174,8 @@ class RotorCase:
         put_fields(draft, dictionaries.fields(self.flow), note)
         constant = dictionaries.constant(self.flow, self.sense)
         put_dictionaries(draft / "constant", constant, note)
-        put(draft / "constant" / "triSurface" / SURFACE, obj_text(self.surface, made))
+        for name, part in ((SURFACE, self.surface), (EDGE, nose(self.blade, self.surface))):
+            put(draft / "constant" / "triSurface" / name, obj_text(part, made))
         system = dictionaries.system(self.flow, self.sense, blades, self.end)
         system["blockMeshDict"] = block_mesh(self.sector)
         system["snappyHexMeshDict"] = snappy(

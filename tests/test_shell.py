@@ -19,7 +19,15 @@ from bladegen.blade.edges import MinimumThickness
 from bladegen.blade.layup.shell.inp import FORCE, GRAVITY, inp_lines, nodal_thickness
 from bladegen.blade.layup.shell.laminates import even, plane_stiffness
 from bladegen.blade.layup.shell.model import shell_model
-from bladegen.blade.layup.shell.quality import ETA, XI, corner_normals, slopes
+from bladegen.blade.layup.shell.quality import (
+    ETA,
+    XI,
+    corner_normals,
+    shapes,
+    shared_normals,
+    slopes,
+    wall_jacobians,
+)
 from bladegen.blade.layup.shell.trailing_edge import WIDE, openness, panels
 from bladegen.cli import commands
 from bladegen.definition.structure.positions import Arc
@@ -105,6 +113,39 @@ def test_shape_functions_are_exact_for_what_is_quadratic(xi, eta, c):
     found = slopes(np.array(xi), np.array(eta)) @ field(XI, ETA)
     wanted = [c[1] + c[3] * eta + 2 * c[4] * xi, c[2] + c[3] * xi + 2 * c[5] * eta]
     assert_allclose(found, wanted, atol=1e-12)
+    assert_allclose(
+        shapes(np.array([xi]), np.array([eta])) @ field(XI, ETA), field(xi, eta), atol=1e-12
+    )
+
+
+def bent(radius, angle):
+    """An element on a cylinder about z, one unit high, and its unit normals outward."""
+    turn = 0.5 * angle * XI
+    outward = np.stack([np.cos(turn), np.sin(turn), 0.0 * turn], axis=-1)
+    return radius * outward + 0.5 * ETA[:, None] * (0.0, 0.0, 1.0), outward
+
+
+@pytest.mark.parametrize(("depth", "sound"), [(0.3, True), (0.9, True), (1.3, False)])
+def test_a_wall_folds_where_it_is_thicker_than_its_radius(depth, sound):
+    points, outward = bent(1.0, 0.5)
+    least = wall_jacobians(points[None], depth * outward[None])
+    assert (least[0] > 0.0) == sound
+    flat, up = bent(1e3, 1e-3)
+    assert_allclose(wall_jacobians(flat[None], 0.2 * up[None]), 0.25 * 0.2, rtol=1e-3)
+
+
+@pytest.mark.parametrize(("angle", "one"), [(10.0, True), (60.0, False)])
+def test_normals_are_shared_where_elements_look_nearly_the_same_way(angle, one):
+    first, c, s = np.array([1.0, 0.0, 0.0]), np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    unit = np.stack([np.tile(first, (8, 1)), np.tile([c, s, 0.0], (8, 1))])
+    quads = np.arange(16).reshape(2, 8)
+    quads[1, [0, 3, 7]] = quads[0, [1, 2, 5]]
+    found = shared_normals(unit, quads)
+    half = np.radians(0.5 * angle)
+    mean = np.array([np.cos(half), np.sin(half), 0.0])
+    assert_allclose(found[0, [1, 2, 5]], np.tile(mean if one else first, (3, 1)), atol=1e-12)
+    assert_allclose(found[1, [0, 3, 7]], np.tile(mean if one else unit[1, 0], (3, 1)), atol=1e-12)
+    assert_allclose(found[0, [0, 3, 4, 6, 7]], np.tile(first, (5, 1)), atol=1e-12)
 
 
 @given(st.floats(-3, 3), st.floats(1e-4, 0.1))

@@ -16,7 +16,7 @@ import numpy as np
 
 from bladegen.blade.layup.shell.laminates import even, moduli
 from bladegen.blade.layup.shell.model import Section, ShellModel
-from bladegen.blade.layup.shell.quality import corner_normals
+from bladegen.blade.layup.shell.quality import corner_normals, shared_normals, wall_jacobians
 from bladegen.definition.structure.structure import Material
 from bladegen.errors import ExportError
 from bladegen.support.arrays import Array, Indices
@@ -27,7 +27,7 @@ FORCE = 1e4  # N, at the tip, toward positive x
 GRAVITY = 9.81  # m/s2
 MODES = 8
 A_LINE = 12  # numbers of a set
-SHRINKS, BY = 60, 0.8  # times that a wall is made thinner whose inside folds, and by how much
+SHRINKS, BY = 100, 0.8  # times that a wall is made thinner whose inside folds, and by how much
 LONGEST = 56  # characters of a name: three of them stand in a line of at most 256
 SOFT = 1e-3  # of the largest modulus, least of an even material: none is singular
 
@@ -171,16 +171,17 @@ def nodal_thickness(model: ShellModel) -> Array:
     found = np.divide(weight, count, out=np.zeros_like(weight), where=count > 0.0)
     normals = corner_normals(mesh.points, skin)
     unit = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
-    outer = mesh.points[skin]
+    shared, outer = shared_normals(unit, skin), mesh.points[skin]
     for _ in range(SHRINKS):
         inner = outer - found[skin][..., None] * unit
         flat = inner.reshape(-1, 3)
         turned = corner_normals(flat, np.arange(len(flat)).reshape(-1, 8))
         folded = np.einsum("mni,mni->mn", turned, unit) <= 0.2 * np.linalg.norm(normals, axis=-1)
-        bad = folded.any(axis=1)
+        bad = folded.any(axis=1) | (wall_jacobians(outer, found[skin][..., None] * shared) <= 0.0)
         if not bad.any():
             return found
-        found[np.unique(skin[bad])] *= BY
+        most = BY * found[skin[bad]].max(axis=1)  # the thickest nodes first: even walls fold last
+        np.minimum.at(found, skin[bad], most[:, None])
     raise ExportError("shell: its walls fold inside; a larger element size may help")
 
 

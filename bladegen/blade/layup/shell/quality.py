@@ -6,11 +6,20 @@ import numpy as np
 
 from bladegen.support.arrays import Array, Indices
 
-__all__ = ["areas", "corner_normals", "figures", "slopes"]
+__all__ = [
+    "areas",
+    "corner_normals",
+    "figures",
+    "shapes",
+    "shared_normals",
+    "slopes",
+    "wall_jacobians",
+]
 
 # parameters of the nodes: corners in turn, then the middles of the sides after each
 XI = np.array([-1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0, -1.0])
 ETA = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0])
+ALIKE = np.cos(np.radians(20.0))  # of normals that CalculiX makes one
 
 
 def slopes(xi: Array, eta: Array) -> Array:
@@ -29,10 +38,56 @@ def slopes(xi: Array, eta: Array) -> Array:
     return found
 
 
+def shapes(xi: Array, eta: Array) -> Array:
+    """Return the serendipity shape functions (g, 8) at parameters (g,)."""
+    x, y = xi[:, None], eta[:, None]
+    found = np.empty((len(xi), 8))
+    a, b = XI[:4], ETA[:4]
+    found[:, :4] = 0.25 * (1.0 + a * x) * (1.0 + b * y) * (a * x + b * y - 1.0)
+    found[:, 4::2] = 0.5 * (1.0 - x**2) * (1.0 + ETA[4::2] * y)
+    found[:, 5::2] = 0.5 * (1.0 - y**2) * (1.0 + XI[5::2] * x)
+    return found
+
+
 def corner_normals(points: Array, quads: Indices) -> Array:
     """Return normals (m, 8, 3) of elements at their nodes [m2 a parameter squared]."""
     tangents = slopes(XI, ETA) @ points[quads][:, None]
     return np.cross(tangents[..., 0, :], tangents[..., 1, :])
+
+
+def shared_normals(unit: Array, quads: Indices) -> Array:
+    """Return unit normals (m, 8, 3) at nodes as CalculiX makes walls of them.
+
+    At each node it is the mean of those of the elements there that look nearly the same way.
+    """
+    flat, order = unit.reshape(-1, 3), np.argsort(quads, axis=None, kind="stable")
+    node = quads.reshape(-1)[order]
+    found = flat[order].copy()
+    for step in range(1, int(np.bincount(node).max())):
+        near = (node[step:] == node[:-step]) & (
+            np.einsum("ni,ni->n", flat[order[step:]], flat[order[:-step]]) > ALIKE
+        )
+        found[step:][near] += flat[order[:-step]][near]
+        found[:-step][near] += flat[order[step:]][near]
+    shared = np.empty_like(found)
+    shared[order] = found / np.linalg.norm(found, axis=-1, keepdims=True)
+    return shared.reshape(unit.shape)
+
+
+def wall_jacobians(outer: Array, wall: Array) -> Array:
+    """Return the least Jacobian determinant (m,) of walls, at 2 x 2 x 2 Gauss points.
+
+    `outer` are nodes (m, 8, 3) of the outside, `wall` the vectors to them from the inside.
+    """
+    gauss = np.array([-1.0, 1.0]) / np.sqrt(3.0)
+    xi, eta = (one.reshape(-1) for one in np.meshgrid(gauss, gauss))
+    found, through = np.full(len(outer), np.inf), shapes(xi, eta) @ wall[:, None]
+    for depth in 0.5 * (1.0 + gauss):
+        tangents = slopes(xi, eta) @ (outer - depth * wall)[:, None]
+        normals = np.cross(tangents[..., 0, :], tangents[..., 1, :])
+        sizes = np.einsum("mgi,mgi->mg", normals, through[:, 0])
+        found = np.minimum(found, sizes.min(axis=1))
+    return found
 
 
 def areas(points: Array, quads: Indices) -> Array:

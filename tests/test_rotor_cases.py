@@ -181,6 +181,11 @@ def test_fields_name_all_patches_and_the_wind(written):
     turning = parsed((written / "constant/MRFProperties").read_text())["turning"]
     assert turning["cellZone"] == "rotor"
     assert set(turning["nonRotatingPatches"]) == ENDS - set(SIDES)
+    begun = parsed((written / "system/setFieldsDict").read_text())["regions"]
+    assert begun[0] == "cylinderToCell"
+    wake = begun[1]
+    assert wake["fieldValues"][2][0] < made.flow.wind
+    assert_allclose([wake["radius"], wake["p2"][0]], [made.flow.radius, made.sector.ends[1]])
     coefficients = parsed((written / "system/controlDict").read_text())["functions"]["coefficients"]
     assert_allclose(
         3.0 * coefficients["Aref"] * 0.5 * 1.225 * made.flow.wind**2, made.flow.force, rtol=1e-7

@@ -15,7 +15,7 @@ from bladegen.definition.estimates import AIR, TIP_SPEED
 from bladegen.errors import GeometryError
 from bladegen.surface.wall_spacing import REYNOLDS
 
-__all__ = ["Conditions", "flow_at"]
+__all__ = ["INDUCTION", "Conditions", "flow_at"]
 
 TIP_SPEED_RATIO = 8.0  # where a file names none
 INDUCTION = 1.0 / 3.0  # of the wind's speed, at the most power: Betz

@@ -9,6 +9,7 @@ from typing import Any
 
 from bladegen.definition.estimates import AIR
 from bladegen.exports.cases import dictionaries
+from bladegen.exports.cases.conditions import INDUCTION
 from bladegen.exports.cases.dictionaries import BLADE, DIMENSIONS
 from bladegen.exports.cases.rotors.blocks import FAR, HUB, INLET, OUTLET, SIDES, ZONE
 from bladegen.exports.cases.rotors.operation import DENSITY, Operation
@@ -87,12 +88,15 @@ def constant(flow: Operation, sense: float) -> dict[str, dict[str, Any]]:
     }
 
 
-def system(flow: Operation, sense: float, blades: int, end: int) -> dict[str, dict[str, Any]]:
-    """Return how the equations are solved and what is written."""
+def system(
+    flow: Operation, sense: float, blades: int, length: float, end: int
+) -> dict[str, dict[str, Any]]:
+    """Return how the equations are solved and what is written; the wake's length in metres."""
     return {
         "controlDict": _control(flow, sense, blades, end),
         "fvSchemes": _schemes(),
         "fvSolution": _solution(),
+        "setFieldsDict": _wake(flow, length),
         "decomposeParDict": {
             "numberOfSubdomains": 2,
             "method": "simple",
@@ -135,6 +139,22 @@ def _control(flow: Operation, sense: float, blades: int, end: int) -> dict[str, 
                 "fields": ("U", "p", "k", "omega"),
             },
         },
+    }
+
+
+def _wake(flow: Operation, length: float) -> dict[str, Any]:
+    """Return where a run begins: a wake as Betz has it, which slows the wind down at the rotor.
+
+    Without it blades would stall before their wake has grown.
+    """
+    slow = (1.0 - 2.0 * INDUCTION) * flow.wind
+    return {
+        "defaultFieldValues": (f"volVectorFieldValue U {vector((flow.wind, 0.0, 0.0))}",),
+        "regions": [
+            f"cylinderToCell {{ p1 (0 0 0); p2 {vector((length, 0.0, 0.0))}; "
+            f"radius {number(flow.radius)}; "
+            f"fieldValues (volVectorFieldValue U {vector((slow, 0.0, 0.0))}); }}"
+        ],
     }
 
 

@@ -53,6 +53,7 @@ export WM_PROJECT_DIR={DEBIAN}    # Debian's; elsewhere source OpenFOAM's etc/ba
 blockMesh
 snappyHexMesh -overwrite
 checkMesh
+setFields    # a wake to begin with, so that the blade does not stall at first
 simpleFoam    # {end} iterations at most; ends earlier once residuals have fallen
 ```
 
@@ -94,6 +95,7 @@ rm -rf processor* postProcessing constant/polyMesh log.*
 blockMesh > log.blockMesh
 snappyHexMesh -overwrite > log.snappyHexMesh
 checkMesh > log.checkMesh
+setFields > log.setFields
 if [ "$count" -gt 1 ]; then
     {{
         foamDictionary -entry numberOfSubdomains -set "$count" system/decomposeParDict

@@ -8,9 +8,9 @@ import io
 import re
 import uuid
 import zipfile
+from html import escape
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -113,7 +113,7 @@ def with_materials(package: bytes, mesh: TriangleMesh, name: str) -> bytes:
             return data
         materials = f'<resources><basematerials id="{MATERIALS}">{bases}</basematerials>'
         data = data.replace(b"<resources>", materials.encode(), 1)
-        title = escape(name, {'"': "&quot;"}).encode("ascii", "xmlcharrefreplace")
+        title = escape(name).encode("ascii", "xmlcharrefreplace")
         told = b'name="%s" pid="%d" pindex="0"' % (title, MATERIALS)
         data = data.replace(b'name="geometry_0"', told, 1)
         return re.sub(

@@ -7,7 +7,7 @@ import numpy as np
 
 from bladegen.blade.layup.laid import Laid
 from bladegen.blade.layup.outlines import within
-from bladegen.definition.structure.positions import Position, Shifted, base_of
+from bladegen.definition.structure.positions import Limited, Position, Shifted, base_of
 from bladegen.definition.structure.structure import Layer, Stated, Structure
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array, Mask
@@ -194,7 +194,7 @@ def _on_skin(structure: Structure) -> Iterator[tuple[Layer, int]]:
 
 def _strip(layer: Layer) -> bool:
     """Tell whether both ends of a layer rest on one place, by a width."""
-    wide = isinstance(layer.start, Shifted) or isinstance(layer.end, Shifted)
+    wide = any(isinstance(end, Shifted | Limited) for end in (layer.start, layer.end))
     return wide and (layer.around or base_of(layer.start) == base_of(layer.end))
 
 

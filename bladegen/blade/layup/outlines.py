@@ -12,7 +12,15 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.definition.distribution import Distribution
 from bladegen.definition.reference_axis import ReferenceAxis
-from bladegen.definition.structure.positions import Arc, LeadingEdge, PlaneCut, Position
+from bladegen.definition.structure.positions import (
+    Arc,
+    Between,
+    EdgeMiddle,
+    Limited,
+    PlaneCut,
+    Position,
+    Shifted,
+)
 from bladegen.support.arrays import Array, Indices, Mask
 
 __all__ = ["Outlines", "beside_axis", "within"]
@@ -145,15 +153,29 @@ class Outlines:
         return known[id(position)]
 
     def _found(self, position: Position, known: dict[int, Array]) -> Array:
-        if isinstance(position, Arc):
-            return within(position.fraction, self.eta)
-        if isinstance(position, LeadingEdge):
-            nose: Array = self.fractions[:, self.fractions.shape[1] // 2]
-            return nose
         if isinstance(position, PlaneCut):
             return self._cut(position)
-        width = np.nan_to_num(within(position.width, self.eta))
-        return self.places(position.base, known) + position.times * width / self.length
+        if isinstance(position, Between | Limited):
+            return self._held(position, known)
+        if isinstance(position, Shifted):
+            width = np.nan_to_num(within(position.width, self.eta))
+            return self.places(position.base, known) + position.times * width / self.length
+        if isinstance(position, Arc):
+            found = within(position.fraction, self.eta)
+        elif isinstance(position, EdgeMiddle):
+            half = self.half_edge / self.length
+            found = -half if position.side == "suction" else 1.0 + half
+        else:
+            found = self.fractions[:, self.fractions.shape[1] // 2]
+        return found
+
+    def _held(self, position: Between | Limited, known: dict[int, Array]) -> Array:
+        """Return a place at a share between two others, or one that goes no farther than they."""
+        first, last = (self.places(one, known) for one in (position.first, position.last))
+        if isinstance(position, Between):
+            return first + position.share * (last - first)
+        own = self.places(position.base, known)
+        return np.clip(own, np.minimum(first, last), np.maximum(first, last))
 
     def _cut(self, plane: PlaneCut) -> Array:
         """Return where a plane cuts a side of the sections, NaN where it does not.

@@ -5,6 +5,7 @@ pressure side, about 0.5 at the leading edge (windIO's `nd_arc`).  A rule says h
 any section, be it of the blade it was made for or of a perturbed one.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from bladegen.definition.distribution import OVER_SPAN, Distribution
@@ -15,7 +16,10 @@ from bladegen.support.values import brief
 __all__ = [
     "LEADING_EDGE",
     "Arc",
+    "Between",
+    "EdgeMiddle",
     "LeadingEdge",
+    "Limited",
     "PlaneCut",
     "Position",
     "Shifted",
@@ -109,12 +113,43 @@ class Shifted:
     __repr__ = brief
 
 
-Position = Arc | LeadingEdge | PlaneCut | Shifted
+@dataclass(frozen=True)
+class EdgeMiddle:
+    """The middle of the trailing edge: beyond its corner on a side by half of its width."""
+
+    side: str
+
+    def __post_init__(self) -> None:
+        one_of(self.side, SIDES, "edge: side", DefinitionError)
+
+
+@dataclass(frozen=True)
+class Between:
+    """A place at a share of the arc from one place to another."""
+
+    first: "Position"
+    last: "Position"
+    share: float
+
+    def __post_init__(self) -> None:
+        amount(self.share, "between: share", DefinitionError)
+
+
+@dataclass(frozen=True)
+class Limited:
+    """A place that goes no farther than two others, whichever of them comes first."""
+
+    base: "Position"
+    first: "Position"
+    last: "Position"
+
+
+Position = Arc | LeadingEdge | PlaneCut | Shifted | EdgeMiddle | Between | Limited
 
 
 def base_of(position: Position) -> Position:
-    """Return the place that another one rests on, through all its widths."""
-    while isinstance(position, Shifted):
+    """Return the place that another one rests on, through all its widths and limits."""
+    while isinstance(position, Shifted | Limited):
         position = position.base
     return position
 
@@ -134,17 +169,25 @@ def extent_of(*positions: Position) -> tuple[float, float]:
     """Return the span fractions between which all of some places are known."""
     low, high = 0.0, 1.0
     for position in positions:
-        base = base_of(position)
-        if isinstance(base, Arc | PlaneCut):
-            grid = (base.fraction if isinstance(base, Arc) else base.offset).grid
-            low, high = max(low, float(grid[0])), min(high, float(grid[-1]))
+        for base in _rests_on(position):
+            if isinstance(base, Arc | PlaneCut):
+                grid = (base.fraction if isinstance(base, Arc) else base.offset).grid
+                low, high = max(low, float(grid[0])), min(high, float(grid[-1]))
     return low, high
 
 
 def knots(position: Position) -> tuple[float, ...]:
     """Return the span fractions at which a place, or a width that leads to it, starts or ends."""
     found: tuple[float, ...] = extent_of(position)
-    while isinstance(position, Shifted):
-        found += float(position.width.grid[0]), float(position.width.grid[-1])
-        position = position.base
+    for part in _rests_on(position):
+        if isinstance(part, Shifted):
+            found += float(part.width.grid[0]), float(part.width.grid[-1])
     return found
+
+
+def _rests_on(position: Position) -> Iterator[Position]:
+    """Yield a place and all places that it rests on."""
+    yield position
+    for name in ("base", "first", "last"):
+        if isinstance(part := getattr(position, name, None), Position):
+            yield from _rests_on(part)

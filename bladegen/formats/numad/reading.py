@@ -5,11 +5,13 @@ rotor spin (CW or CCW) and swept twist (T or F) in rows 2 to 4; from row 7 on, d
 empty span: span [m], twist [deg, leading edge upwind], chord [m], thickness [%], chord offset and
 aerodynamic centre [chords] in A to F, empty where there is no value; airfoils in H (span [m])
 and I (name).  The offset is the distance from leading edge to pitch axis; with natural offset it
-is counted from the place of the greatest thickness.  There is no prebend and no sweep.  The older
-workbooks, and project files, are `stations`.
+is counted from the place of the greatest thickness.  There is no prebend and no sweep.  Column K
+has output stations [m], over which what lies inside the skin (`components`) counts its span.  The
+older workbooks, and project files, are `stations`.
 """
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +25,7 @@ from bladegen.formats.common.assembly import Library, Schedule, assemble, span_f
 from bladegen.formats.common.document import Notes, Range
 from bladegen.formats.common.table import Column, Rows, values_of
 from bladegen.formats.common.text_file import head
+from bladegen.formats.numad import components, materials
 from bladegen.formats.numad import stations as numad_stations
 from bladegen.support.arrays import Array
 
@@ -39,6 +42,8 @@ COLUMNS = (
     ("pitch_axis", "chord offset", 1.0, Range(-1.0, 2.0, "of the chord")),
 )
 AIRFOIL_SPAN, AIRFOIL_NAME = 7, 8
+OUTPUT = 10  # its column
+ROUNDING = 1e-6  # of the span, by which output stations may miss root and tip
 
 
 def recognises(path: Path) -> bool:
@@ -59,8 +64,10 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
     """Read a blade; None if there are problems, which `notes` then holds."""
     if path.suffix.lower() == PROJECT:
         return numad_stations.read_project(path, notes)
-    title = _sheet(path) or SHEET
-    rows = workbook.sheets(path, (title,)).get(title, [])
+    titles = {name.strip().lower(): name for name in workbook.sheet_names(path)}
+    wanted = [titles.get(one.lower(), one) for one in (SHEET, components.SHEET, materials.SHEET)]
+    found_sheets = workbook.sheets(path, tuple(wanted))
+    rows, parts, made_of = (found_sheets.get(name, []) for name in wanted)
     if numad_stations.is_layout(rows):
         return numad_stations.read_workbook(path, rows, notes, airfoils)
     natural = _switch(rows, 2, ("T", "F"), notes) == "T"
@@ -68,8 +75,7 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
         notes.findings.append(
             Finding(f"{SHEET}!B3", "CCW: read as CW, of which the rotor is the mirror image")
         )
-    if _switch(rows, 4, ("T", "F"), notes) == "T":
-        notes.findings.append(Finding(f"{SHEET}!B4", "swept twist is passed over"))
+    twisted = _switch(rows, 4, ("T", "F"), notes) == "T"
     table = _until_empty(rows, 0)
     places = tuple(at for at, _ in table)
     values = {}
@@ -99,7 +105,24 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
                 "airfoils, interpolated between them",
             )
         )
-    return assemble(path, values, places, schedule, Library(lambda _: found, list), notes)
+    ends = _output_ends(rows, values["z"])
+    structure = components.read(parts, made_of, notes, ends=ends, twisted=twisted)
+    made = assemble(path, values, places, schedule, Library(lambda _: found, list), notes)
+    return None if made is None else replace(made, structure=structure)
+
+
+def _output_ends(rows: Rows, z: Array) -> tuple[float, float]:
+    """Return the span fractions of the first and the last output station, the blade's if none."""
+    stations = [
+        cell for _, cells in _until_empty(rows, OUTPUT) if isinstance(cell := cells[OUTPUT], float)
+    ]
+    if len(stations) < 2 or stations[0] >= stations[-1]:
+        return 0.0, 1.0
+    low, high = ((at - z[0]) / (z[-1] - z[0]) for at in (stations[0], stations[-1]))
+    return (
+        float(low) if low > ROUNDING else 0.0,
+        float(high) if high < 1.0 - ROUNDING else 1.0,
+    )
 
 
 def _switch(rows: Rows, at: int, allowed: tuple[str, str], notes: Notes) -> str:

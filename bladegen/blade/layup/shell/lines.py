@@ -12,7 +12,14 @@ import numpy as np
 
 from bladegen.blade.layup.outlines import Outlines
 from bladegen.definition.distribution import Distribution
-from bladegen.definition.structure.positions import LEADING_EDGE, PlaneCut, Position, Shifted
+from bladegen.definition.structure.positions import (
+    LEADING_EDGE,
+    Between,
+    Limited,
+    PlaneCut,
+    Position,
+    Shifted,
+)
 from bladegen.definition.structure.structure import Structure
 from bladegen.support.arrays import Array
 
@@ -107,8 +114,10 @@ def _everywhere(place: Position, outlines: Outlines) -> Array:
 
 def _held(place: Position) -> Position:
     """Return a place whose plane goes on beyond the ends of its grid."""
-    if isinstance(place, Shifted):
+    if isinstance(place, Shifted | Limited):
         return replace(place, base=_held(place.base))
+    if isinstance(place, Between):
+        return replace(place, first=_held(place.first), last=_held(place.last))
     if not isinstance(place, PlaneCut):
         return place
     grid, values = place.offset.grid, place.offset.values

@@ -34,7 +34,8 @@ from headlines import summary
 HERE = Path(__file__).resolve().parent
 MEASURED = HERE.parent / "docs" / "measured.md"
 LIBRARIES = ("bladegen", "numpy", "scipy", "numba", "cadquery-ocp", "trimesh", "pyvista", "zarr")
-SKIPPED = {"figures", "headlines", "table", "wisdem_run"}  # the last needs another environment
+SKIPPED = {"figures", "headlines", "table"}
+SKIPPED |= {"numad_workbook", "wisdem_run"}  # these need another environment
 HEAD = f"""# Measured
 
 What `benchmarks/` print, each in one run of its own; `make bench` runs all. Contenders take turns

@@ -65,7 +65,7 @@ def read(parts, materials=MATERIALS, widths=None, **more):
     return made, [str(finding) for finding in notes.findings]
 
 
-def workbook(path, *, swept="F"):
+def workbook(path, *, swept="F", outputs=(None, None)):
     (path / "airfoils").mkdir()
     rows = "\n".join(f"{x:.12f} {y:.12f}" for x, y in circle(801))
     (path / "airfoils" / "round.dat").write_text(f"round\n{rows}\n")
@@ -75,7 +75,7 @@ def workbook(path, *, swept="F"):
         *([None, word] for word in ("F", "CW", swept)),
         [],
         [],
-        *([20 * i, TWIST, CHORD[i], 100, 0.5, *tail[i]] for i in (0, 1)),
+        *([20 * i, TWIST, CHORD[i], 100, 0.5, *tail[i], None, outputs[i]] for i in (0, 1)),
     ]
     book = Workbook()
     book.remove(book.active)
@@ -229,15 +229,21 @@ def test_windio_carries_it(made, blade, tmp_path):
     assert_allclose([back[name] for name in own], list(own.values()), rtol=2e-3)
 
 
-def test_twisted_webs_turn_the_plane_of_the_caps():
-    for twisted, frame in ((False, "root"), (True, "chord")):
-        structure, _ = read(PARTS, twisted=twisted)
-        assert structure.webs[0].start.base.base.frame == frame
-
-
-def test_spans_count_over_the_output_stations():
-    structure, _ = read(PARTS, ends=(0.1, 0.6))
-    assert structure.webs[0].extent == pytest.approx((0.15, 0.55))
+@pytest.mark.parametrize(
+    ("outputs", "extent", "said"),
+    [
+        ((2, 12), (0.15, 0.55), False),
+        ((0, 40), (0.1, 0.9), True),
+        ((None, None), (0.1, 0.9), False),
+    ],
+)
+def test_spans_count_over_the_output_stations(tmp_path, outputs, extent, said):
+    made = bg.read(workbook(tmp_path, swept="T", outputs=outputs))
+    web = made.structure.webs[0]
+    assert web.extent == pytest.approx(extent)
+    assert web.start.base.base.frame == "chord"
+    told = "Geometry!K7: output stations run 0 to 40 m, the blade 0 to 20 m"
+    assert (told in findings(made)) is said
 
 
 @pytest.mark.parametrize(
@@ -361,3 +367,9 @@ def test_places_between_others_know_where_they_end():
         assert not around(place, other)
     with pytest.raises(DefinitionError, match="edge: side"):
         EdgeMiddle("lower")
+
+
+def test_materials_of_one_name_get_one_each():
+    materials = [[i, "gel", *MATERIALS[i - 1][2:]] for i in (1, 2, 3)]
+    structure, _ = read(PARTS, materials)
+    assert [one.name for one in structure.materials] == ["gel", "gel 2", "gel 3"]

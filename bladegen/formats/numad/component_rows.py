@@ -158,5 +158,5 @@ def _cell(cells: Sequence[Cell], k: int) -> Cell:
 def text(cells: Sequence[Cell], k: int) -> str:
     cell = _cell(cells, k)
     if isinstance(cell, float):
-        return f"{cell:g}"
+        return f"{cell:.15g}"
     return "" if cell is None else cell.strip()

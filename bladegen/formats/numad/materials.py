@@ -55,7 +55,7 @@ def read(rows: Rows, notes: Notes) -> dict[int, Material]:
         if problem:
             notes.findings.append(Finding(f"{SHEET}!A{at}", f"{problem}; {name} is left out"))
             continue
-        if name in {one.name for one in found.values()}:
+        while name in {one.name for one in found.values()}:
             name = f"{name} {key:g}"
         made, taken, strong = _material(name, cells)
         found[int(key)] = made

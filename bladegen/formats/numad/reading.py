@@ -105,13 +105,13 @@ def read(path: Path, notes: Notes, airfoils: Path | None = None) -> BladeDefinit
                 "airfoils, interpolated between them",
             )
         )
-    ends = _output_ends(rows, values["z"])
+    ends = _output_ends(rows, values["z"], notes)
     structure = components.read(parts, made_of, notes, ends=ends, twisted=twisted)
     made = assemble(path, values, places, schedule, Library(lambda _: found, list), notes)
     return None if made is None else replace(made, structure=structure)
 
 
-def _output_ends(rows: Rows, z: Array) -> tuple[float, float]:
+def _output_ends(rows: Rows, z: Array, notes: Notes) -> tuple[float, float]:
     """Return the span fractions of the first and the last output station, the blade's if none."""
     stations = [
         cell for _, cells in _until_empty(rows, OUTPUT) if isinstance(cell := cells[OUTPUT], float)
@@ -119,6 +119,12 @@ def _output_ends(rows: Rows, z: Array) -> tuple[float, float]:
     if len(stations) < 2 or stations[0] >= stations[-1]:
         return 0.0, 1.0
     low, high = ((at - z[0]) / (z[-1] - z[0]) for at in (stations[0], stations[-1]))
+    if low < -ROUNDING or high > 1.0 + ROUNDING:
+        said = (
+            f"output stations run {stations[0]:g} to {stations[-1]:g} m, the blade {z[0]:g} to "
+            f"{z[-1]:g} m; components are counted over what is common"
+        )
+        notes.findings.append(Finding(f"{SHEET}!K{FIRST_ROW}", said))
     return (
         float(low) if low > ROUNDING else 0.0,
         float(high) if high < 1.0 - ROUNDING else 1.0,

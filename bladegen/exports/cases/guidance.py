@@ -1,5 +1,6 @@
 """What a case says of itself: the commands to type, what comes out, what a real run needs."""
 
+from collections.abc import Sequence
 from math import degrees
 from typing import Any
 
@@ -92,10 +93,25 @@ laminar over much of the chord, drag is lower and lift a few per cent higher tha
 """
 
 
-def allrun() -> str:
-    """Return the script that runs a case."""
+def allrun(steps: Sequence[str], slices: str, results: str, told: str) -> str:
+    """Return the script that runs a case.
+
+    Parameters
+    ----------
+    steps : sequence of str
+        What is run before simpleFoam, each with a log of its own.
+    slices : str
+        How many along x, y and z the cells are cut for `$count` processes.
+    results : str
+        The function object whose coefficients are shown in the end.
+    told : str
+        Its first columns' names, parted by commas.
+    """
+    made = " constant/polyMesh" if "blockMesh" in steps else ""
+    before = "\n".join(f"{step} > log.{step.split()[0]}" for step in steps)
+    last = f"postProcessing/{results}/0/coefficient.dat"
     return f"""#!/bin/sh
-# Runs the case from the mesh to the coefficients; ./Allrun 4 does so in four processes.
+# Runs the case to its coefficients; ./{RUN} 4 solves in four processes.
 set -e
 cd "$(dirname "$0")"
 count=${{1:-1}}
@@ -103,16 +119,16 @@ if [ -z "$WM_PROJECT_DIR" ] && [ -d {DEBIAN}/etc ]; then
     export WM_PROJECT_DIR={DEBIAN}
 fi
 command -v simpleFoam > /dev/null || {{
-    echo "Allrun: no simpleFoam on the path; install OpenFOAM, or source its etc/bashrc" >&2
+    echo "{RUN}: no simpleFoam on the path; install OpenFOAM, or source its etc/bashrc" >&2
     exit 1
 }}
 foamListTimes -rm
-rm -rf processor* postProcessing log.*
-checkMesh > log.checkMesh
+rm -rf processor* postProcessing{made} log.*
+{before}
 if [ "$count" -gt 1 ]; then
     {{
         foamDictionary -entry numberOfSubdomains -set "$count" system/decomposeParDict
-        foamDictionary -entry coeffs/n -set "($count 1 1)" system/decomposeParDict
+        foamDictionary -entry coeffs/n -set "({slices})" system/decomposeParDict
         decomposePar -force
     }} > log.decomposePar
     mpirun -np "$count" simpleFoam -parallel > log.simpleFoam
@@ -121,6 +137,6 @@ else
     simpleFoam > log.simpleFoam
 fi
 touch case.foam
-echo "iteration, Cd, Cs, Cl, ...: the last line of postProcessing/forces/0/coefficient.dat"
-tail -n 1 postProcessing/forces/0/coefficient.dat | cut -f 1-4
+echo "{told}, ...: the last line of {last}"
+tail -n 1 {last} | cut -f 1-{len(told.split(","))}
 """

@@ -128,7 +128,7 @@ class SectionCase:
         mesh = extruded(self.layers, thickness, self.outline.sides)
         write_mesh(mesh, home, group=dictionaries.BLADE)
         put(draft / "README.md", readme(self.blade.name, self.figures, self.flow, self.end, made))
-        put_run(draft, allrun())
+        put_run(draft, allrun(("checkMesh",), "$count 1 1", "forces", "iteration, Cd, Cs, Cl"))
 
 
 def section_case(

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from bladegen.exports.cases.guidance import DEBIAN, RUN
+from bladegen.exports.cases.guidance import DEBIAN
 from bladegen.exports.cases.rotors.operation import Operation
 
-__all__ = ["allrun", "readme"]
+__all__ = ["readme"]
 
 
 def readme(name: str, figures: dict[str, Any], flow: Operation, end: int, made: str) -> str:
@@ -73,41 +73,4 @@ simpleFoam    # {end} iterations at most; ends earlier once residuals have falle
 `bladegen evaluate` says what blade element momentum theory makes of the same blade.
 
 {made}
-"""
-
-
-def allrun() -> str:
-    """Return the script that runs a case."""
-    return f"""#!/bin/sh
-# Meshes and runs the case; ./{RUN} 4 solves in four processes.
-set -e
-cd "$(dirname "$0")"
-count=${{1:-1}}
-if [ -z "$WM_PROJECT_DIR" ] && [ -d {DEBIAN}/etc ]; then
-    export WM_PROJECT_DIR={DEBIAN}
-fi
-command -v simpleFoam > /dev/null || {{
-    echo "{RUN}: no simpleFoam on the path; install OpenFOAM, or source its etc/bashrc" >&2
-    exit 1
-}}
-foamListTimes -rm
-rm -rf processor* postProcessing constant/polyMesh log.*
-blockMesh > log.blockMesh
-snappyHexMesh -overwrite > log.snappyHexMesh
-checkMesh > log.checkMesh
-setFields > log.setFields
-if [ "$count" -gt 1 ]; then
-    {{
-        foamDictionary -entry numberOfSubdomains -set "$count" system/decomposeParDict
-        foamDictionary -entry coeffs/n -set "(1 1 $count)" system/decomposeParDict
-        decomposePar -force
-    }} > log.decomposePar
-    mpirun -np "$count" simpleFoam -parallel > log.simpleFoam
-    reconstructPar -latestTime > log.reconstructPar
-else
-    simpleFoam > log.simpleFoam
-fi
-touch case.foam
-echo "iteration, thrust coefficient, ...: the last line of coefficient.dat"
-tail -n 1 postProcessing/coefficients/0/coefficient.dat | cut -f 1-2
 """

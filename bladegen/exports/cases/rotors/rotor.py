@@ -18,9 +18,10 @@ from bladegen.blade.blade import Blade
 from bladegen.cad.rotor import Rotor, rotor_of
 from bladegen.errors import GeometryError
 from bladegen.exports.cases.folder import put, put_dictionaries, put_fields, put_run, written
+from bladegen.exports.cases.guidance import allrun
 from bladegen.exports.cases.rotors import dictionaries
 from bladegen.exports.cases.rotors.blocks import block_mesh
-from bladegen.exports.cases.rotors.guidance import allrun, readme
+from bladegen.exports.cases.rotors.guidance import readme
 from bladegen.exports.cases.rotors.meshing import EDGE, SURFACE, Layers, snappy
 from bladegen.exports.cases.rotors.operation import TURN, Operation, operation_of
 from bladegen.exports.cases.rotors.placing import nose, radii, require_clear, standing
@@ -43,12 +44,9 @@ ENDS = 1, 1_000_000
 UPSTREAM, DOWNSTREAM = 0.8, 1.2  # of the far field's radius: inlet and outlet
 SLENDER = 2.0  # how many times as long cells are along the blade
 STRIP = 0.75  # background cells are at most that share of the strip's half width
-AHEAD, OFF, UP = (
-    1.37,
-    0.41,
-    0.71,
-)  # a point in the flow: cells ahead of the blade, beside; tip radii
+AHEAD, OFF, UP = 1.37, 0.41, 0.71  # a point in the flow: cells ahead of the blade, beside; radii
 LANDMARKS = 201
+STEPS = "blockMesh", "snappyHexMesh -overwrite", "checkMesh", "setFields"
 TOLD = (
     "wind_m_s",
     "rotor_speed_rpm",
@@ -183,7 +181,7 @@ class RotorCase:
         )
         put_dictionaries(draft / "system", system, note)
         put(draft / "README.md", readme(self.blade.name, self.figures, self.flow, self.end, made))
-        put_run(draft, allrun())
+        put_run(draft, allrun(STEPS, "1 1 $count", "coefficients", "iteration, thrust coefficient"))
 
 
 def rotor_case(

@@ -312,6 +312,13 @@ def openfoam(folder, *words):
     return done.stdout
 
 
+def test_few_cells_are_said_where_they_are_asked_for(written):
+    (said,) = case().remarks
+    assert "48 cells around the section are few" in said
+    assert said in (written / "README.md").read_text()
+    assert case(cells=256, y_plus=100.0).remarks == []
+
+
 @OPENFOAM
 def test_openfoam_takes_the_sector(tmp_path):
     made = case()

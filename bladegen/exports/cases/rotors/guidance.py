@@ -8,7 +8,9 @@ from bladegen.exports.cases.rotors.operation import Operation
 __all__ = ["readme"]
 
 
-def readme(name: str, figures: dict[str, Any], flow: Operation, end: int, made: str) -> str:
+def readme(
+    name: str, figures: dict[str, Any], flow: Operation, end: int, remarks: list[str], made: str
+) -> str:
     """Return README.md of a rotor's case."""
     rows = {
         "rotor": f"{figures['blades']} blades, tip radius {flow.radius:.3f} m; the case is one "
@@ -71,6 +73,6 @@ simpleFoam    # {end} iterations at most; ends earlier once residuals have falle
 - the last time's folder: the fields. `paraview case.foam` (an empty file of that name) shows them.
 
 `bladegen evaluate` says what blade element momentum theory makes of the same blade.
-
+{"".join(f"{chr(10)}Mind: {line}.{chr(10)}" for line in remarks)}
 {made}
 """

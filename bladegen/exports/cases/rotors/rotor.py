@@ -187,8 +187,8 @@ class RotorCase:
             self.level, self.size, layers, self.inside, self.regions
         )
         put_dictionaries(draft / "system", system, note)
-        told = readme(self.blade.name, self.figures, self.flow, self.end, self.remarks, made)
-        put(draft / "README.md", told)
+        page = readme(self.blade.name, self.figures, self.flow, self.end, self.remarks, made)
+        put(draft / "README.md", page)
         put_run(draft, allrun(STEPS, "1 1 $count", "coefficients", "iteration, thrust coefficient"))
 
 

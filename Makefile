@@ -17,7 +17,7 @@ lint: ## set up, lint and check types
 	.venv/bin/ruff format --check
 	.venv/bin/mypy
 
-test: lint ## the same, then test every law (JOBS=2 processes)
+test: lint ## the same, then test every law (JOBS=3 processes)
 	./scripts/test.sh -m "not nightly"
 
 test-all: lint ## the same with what explores: nightly, and before a release

@@ -19,8 +19,9 @@ before="$(state)"
 # compiled loops are kept on the disk: made here once, and not by every process that counts its lines
 for kind in families derivatives; do .venv/bin/python scripts/warm.py "$kind" & done
 wait
+# three on two cores: tests wait for browsers and other processes, too
 # worksteal keeps a module's tests, and what they share, in one process as far as it can
-.venv/bin/python -m pytest -n "${JOBS:-2}" --dist worksteal --cov --cov-report= "$@"
+.venv/bin/python -m pytest -n "${JOBS:-3}" --dist worksteal --cov --cov-report= "$@"
 after="$(state)"
 if [ "$before" != "$after" ]; then
     printf 'test: the checkout was changed while the tests ran:\n' >&2

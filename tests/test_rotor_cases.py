@@ -312,6 +312,20 @@ def openfoam(folder, *words):
     return done.stdout
 
 
+def test_coefficients_are_the_rotors_about_its_axis(written):
+    """forceCoeffs has CmRoll about the drag's direction, for a moment's M / (q Aref lRef)."""
+    read = parsed((written / "system" / "controlDict").read_text())["functions"]["coefficients"]
+    flow = case().flow
+    assert (read["dragDir"], read["liftDir"], read["pitchAxis"]) == (
+        [1, 0, 0],
+        [0, 0, 1],
+        [0, 1, 0],
+    )
+    assert_allclose(read["Aref"] * 3.0, pi * flow.radius**2, rtol=1e-6)
+    assert (read["lRef"], read["magUInf"]) == pytest.approx((flow.radius, flow.wind), rel=1e-6)
+    assert "`CmRoll` that of torque" in (written / "README.md").read_text()
+
+
 def test_few_cells_are_said_where_they_are_asked_for(written):
     (said,) = case().remarks
     assert "48 cells around the section are few" in said

@@ -111,7 +111,8 @@ def allrun(steps: Sequence[str], slices: str, results: str, told: str) -> str:
     before = "\n".join(f"{step} > log.{step.split()[0]}" for step in steps)
     last = f"postProcessing/{results}/0/coefficient.dat"
     return f"""#!/bin/sh
-# Runs the case to its coefficients; ./{RUN} 4 solves in four processes.
+# Runs the case to its coefficients; ./{RUN} 4 solves in four processes.  As root, in a container,
+# OpenMPI asks for OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1.
 set -e
 cd "$(dirname "$0")"
 count=${{1:-1}}

@@ -5,6 +5,7 @@ terms of a frame that turns (MRF), so that the flow around the blade is steady. 
 patches turn; the cylinder at the hub and the far one let air slip along them.
 """
 
+from math import pi
 from typing import Any
 
 from bladegen.definition.estimates import AIR
@@ -88,12 +89,10 @@ def constant(flow: Operation, sense: float) -> dict[str, dict[str, Any]]:
     }
 
 
-def system(
-    flow: Operation, sense: float, blades: int, length: float, end: int
-) -> dict[str, dict[str, Any]]:
+def system(flow: Operation, blades: int, length: float, end: int) -> dict[str, dict[str, Any]]:
     """Return how the equations are solved and what is written; the wake's length in metres."""
     return {
-        "controlDict": _control(flow, sense, blades, end),
+        "controlDict": _control(flow, blades, end),
         "fvSchemes": _schemes(),
         "fvSolution": _solution(),
         "setFieldsDict": _wake(flow, length),
@@ -105,7 +104,7 @@ def system(
     }
 
 
-def _control(flow: Operation, sense: float, blades: int, end: int) -> dict[str, Any]:
+def _control(flow: Operation, blades: int, end: int) -> dict[str, Any]:
     every = {"writeControl": "timeStep", "writeInterval": 1, "log": "false"}
     about = {
         "libs": ('"libforces.so"',),
@@ -114,32 +113,35 @@ def _control(flow: Operation, sense: float, blades: int, end: int) -> dict[str, 
         "rhoInf": DENSITY,
         "CofR": (0, 0, 0),
     }
-    return dictionaries.stepping(end) | {
-        "functions": {
-            "forces": {"type": "forces", **about, **every},
-            "coefficients": {  # Cd is the thrust coefficient, CmPitch that of the torque
-                "type": "forceCoeffs",
-                **about,
-                "magUInf": flow.wind,
-                "lRef": flow.radius,
-                "Aref": 3.14159265 * flow.radius**2 / blades,
-                "dragDir": (1, 0, 0),
-                "liftDir": (0, 0, 1),
-                "pitchAxis": (sense, 0, 0),
-                **every,
+    return (
+        dictionaries.stepping(end)
+        | {
+            "functions": {
+                "forces": {"type": "forces", **about, **every},
+                "coefficients": {  # Cd is that of thrust, CmRoll, about the drag, that of torque
+                    "type": "forceCoeffs",
+                    **about,
+                    "magUInf": flow.wind,
+                    "lRef": flow.radius,
+                    "Aref": pi * flow.radius**2 / blades,
+                    "dragDir": (1, 0, 0),
+                    "liftDir": (0, 0, 1),
+                    "pitchAxis": (0, 1, 0),
+                    **every,
+                },
+                "yPlus": {
+                    "type": "yPlus",
+                    "libs": ('"libfieldFunctionObjects.so"',),
+                    "writeControl": "writeTime",
+                },
+                "residuals": {
+                    "type": "solverInfo",
+                    "libs": ('"libutilityFunctionObjects.so"',),
+                    "fields": ("U", "p", "k", "omega"),
+                },
             },
-            "yPlus": {
-                "type": "yPlus",
-                "libs": ('"libfieldFunctionObjects.so"',),
-                "writeControl": "writeTime",
-            },
-            "residuals": {
-                "type": "solverInfo",
-                "libs": ('"libutilityFunctionObjects.so"',),
-                "fields": ("U", "p", "k", "omega"),
-            },
-        },
-    }
+        }
+    )
 
 
 def _wake(flow: Operation, length: float) -> dict[str, Any]:

@@ -67,8 +67,8 @@ simpleFoam    # {end} iterations at most; ends earlier once residuals have falle
   N m; the rotor's thrust and torque are {figures["blades"]} times the x of total force and moment,
   positive downwind and by the right hand.
 - `postProcessing/coefficients/0/coefficient.dat`: the rotor's, over 1/2 rho U^2 pi R^2 =
-  {flow.force:.6g} N; `Cd` is that of thrust, `CmPitch` that of torque (over R besides), and
-  that of power is {flow.ratio:.4g} times it.
+  {flow.force:.6g} N; `Cd` is that of thrust, `CmRoll` that of torque (over R besides), and
+  that of power is {flow.ratio:.4g} times its size.
 - `postProcessing/residuals/0/`: residuals at each iteration.
 - the last time's folder: the fields. `paraview case.foam` (an empty file of that name) shows them.
 

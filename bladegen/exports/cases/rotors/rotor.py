@@ -181,7 +181,7 @@ class RotorCase:
         put_dictionaries(draft / "constant", constant, note)
         for name, part in ((SURFACE, self.surface), (EDGE, nose(self.blade, self.surface))):
             put(draft / "constant" / "triSurface" / name, obj_text(part, made))
-        system = dictionaries.system(self.flow, self.sense, blades, self.sector.ends[1], self.end)
+        system = dictionaries.system(self.flow, blades, self.sector.ends[1], self.end)
         system["blockMeshDict"] = block_mesh(self.sector)
         system["snappyHexMeshDict"] = snappy(
             self.level, self.size, layers, self.inside, self.regions

@@ -113,35 +113,32 @@ def _control(flow: Operation, blades: int, end: int) -> dict[str, Any]:
         "rhoInf": DENSITY,
         "CofR": (0, 0, 0),
     }
-    return (
-        dictionaries.stepping(end)
-        | {
-            "functions": {
-                "forces": {"type": "forces", **about, **every},
-                "coefficients": {  # Cd is that of thrust, CmRoll, about the drag, that of torque
-                    "type": "forceCoeffs",
-                    **about,
-                    "magUInf": flow.wind,
-                    "lRef": flow.radius,
-                    "Aref": pi * flow.radius**2 / blades,
-                    "dragDir": (1, 0, 0),
-                    "liftDir": (0, 0, 1),
-                    "pitchAxis": (0, 1, 0),
-                    **every,
-                },
-                "yPlus": {
-                    "type": "yPlus",
-                    "libs": ('"libfieldFunctionObjects.so"',),
-                    "writeControl": "writeTime",
-                },
-                "residuals": {
-                    "type": "solverInfo",
-                    "libs": ('"libutilityFunctionObjects.so"',),
-                    "fields": ("U", "p", "k", "omega"),
-                },
+    return dictionaries.stepping(end) | {
+        "functions": {
+            "forces": {"type": "forces", **about, **every},
+            "coefficients": {  # Cd is that of thrust, CmRoll, about the drag, that of torque
+                "type": "forceCoeffs",
+                **about,
+                "magUInf": flow.wind,
+                "lRef": flow.radius,
+                "Aref": pi * flow.radius**2 / blades,
+                "dragDir": (1, 0, 0),
+                "liftDir": (0, 0, 1),
+                "pitchAxis": (0, 1, 0),
+                **every,
             },
-        }
-    )
+            "yPlus": {
+                "type": "yPlus",
+                "libs": ('"libfieldFunctionObjects.so"',),
+                "writeControl": "writeTime",
+            },
+            "residuals": {
+                "type": "solverInfo",
+                "libs": ('"libutilityFunctionObjects.so"',),
+                "fields": ("U", "p", "k", "omega"),
+            },
+        },
+    }
 
 
 def _wake(flow: Operation, length: float) -> dict[str, Any]:

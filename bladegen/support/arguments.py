@@ -23,6 +23,7 @@ __all__ = [
     "numbers",
     "one_of",
     "path_of",
+    "require_within",
     "shown",
     "suggestion",
     "whole",
@@ -78,6 +79,19 @@ def amount(value: object, field: str, error: type[BladegenError]) -> float:
     if not np.isfinite(float(single)):
         raise error(f"{field}: got {float(single):g}, must be finite")
     return float(single)
+
+
+def require_within(
+    value: float,
+    field: str,
+    allowed: tuple[float, float],
+    error: type[BladegenError],
+    unit: str = "",
+) -> None:
+    """See that a value lies in a closed range; NaN does not."""
+    low, high = allowed
+    if not low <= value <= high:
+        raise error(f"{field}: got {value:g}, allowed is {low:g} to {high:g}{unit}")
 
 
 def whole(value: object, field: str, error: type[BladegenError]) -> int:

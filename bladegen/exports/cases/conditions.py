@@ -13,6 +13,7 @@ from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.definition.estimates import AIR, TIP_SPEED
 from bladegen.errors import GeometryError
+from bladegen.support.arguments import require_within
 from bladegen.surface.wall_spacing import REYNOLDS
 
 __all__ = ["INDUCTION", "Conditions", "flow_at"]
@@ -54,13 +55,9 @@ class Conditions:
 
     def __post_init__(self) -> None:
         steep = degrees(STEEPEST)
-        for name, value, low, high, unit in (
-            ("speed", self.speed, SLOWEST, FASTEST, " m/s"),
-            ("reynolds", self.reynolds, *REYNOLDS, ""),
-            ("alpha", degrees(self.alpha), -steep, steep, " degrees"),
-        ):
-            if not low <= value <= high:
-                raise GeometryError(f"{name}: got {value:g}, allowed is {low:g} to {high:g}{unit}")
+        require_within(self.speed, "speed", (SLOWEST, FASTEST), GeometryError, " m/s")
+        require_within(self.reynolds, "reynolds", REYNOLDS, GeometryError)
+        require_within(degrees(self.alpha), "alpha", (-steep, steep), GeometryError, " degrees")
 
     @property
     def viscosity(self) -> float:

@@ -12,11 +12,34 @@ from bladegen.exports.cases.conditions import Conditions
 from bladegen.exports.cases.poly_mesh import FAR, PLANES
 from bladegen.support.foam import number, vector
 
-__all__ = ["BLADE", "DIMENSIONS", "constant", "fields", "fluid", "stepping", "system"]
+__all__ = [
+    "BLADE",
+    "DIMENSIONS",
+    "WATCHED",
+    "constant",
+    "fields",
+    "fluid",
+    "schemes",
+    "solution",
+    "stepping",
+    "system",
+]
 
 BLADE = "blade"  # the group of all walls
 QUARTER = 0.25  # chords; where moments are about
 SETTLED = {'"(p|U|k|omega)"': 1e-6}  # initial residuals that end a run
+WATCHED: dict[str, Any] = {  # besides forces
+    "yPlus": {
+        "type": "yPlus",
+        "libs": ('"libfieldFunctionObjects.so"',),
+        "writeControl": "writeTime",
+    },
+    "residuals": {
+        "type": "solverInfo",
+        "libs": ('"libutilityFunctionObjects.so"',),
+        "fields": ("U", "p", "k", "omega"),
+    },
+}
 DIMENSIONS = {
     "U": "[0 1 -1 0 0 0 0]",
     "p": "[0 2 -2 0 0 0 0]",
@@ -78,8 +101,10 @@ def system(flow: Conditions, thickness: float, end: int) -> dict[str, dict[str, 
     """Return how the equations are solved and what is written, for a slab of a thickness [m]."""
     return {
         "controlDict": _control(flow, thickness, end),
-        "fvSchemes": _schemes(),
-        "fvSolution": _solution(),
+        "fvSchemes": schemes({"default": "Gauss linear"}, "limitedLinear 1", "corrected"),
+        "fvSolution": solution(
+            0.05, consistent=True, relaxed={"equations": {"U": 0.95, '"(k|omega)"': 0.9}}
+        ),
         "decomposeParDict": {
             "numberOfSubdomains": 2,
             "method": "simple",
@@ -128,39 +153,52 @@ def _control(flow: Conditions, thickness: float, end: int) -> dict[str, Any]:
                 "writeInterval": 1,
                 "log": "false",
             },
-            "yPlus": {
-                "type": "yPlus",
-                "libs": ('"libfieldFunctionObjects.so"',),
-                "writeControl": "writeTime",
-            },
-            "residuals": {
-                "type": "solverInfo",
-                "libs": ('"libutilityFunctionObjects.so"',),
-                "fields": ("U", "p", "k", "omega"),
-            },
+            **WATCHED,
         },
     }
 
 
-def _schemes() -> dict[str, Any]:
+def schemes(gradients: dict[str, str], eddies: str, normal: str) -> dict[str, Any]:
+    """Return the schemes of a steady run.
+
+    Parameters
+    ----------
+    gradients : dict
+        Schemes of gradients, "default" among them.
+    eddies : str
+        How k and omega are carried along.
+    normal : str
+        How gradients normal to faces are corrected.
+    """
     return {
         "ddtSchemes": {"default": "steadyState"},
-        "gradSchemes": {"default": "Gauss linear"},
+        "gradSchemes": gradients,
         "divSchemes": {
             "default": "none",
             "div(phi,U)": "bounded Gauss linearUpwind grad(U)",
-            "div(phi,k)": "bounded Gauss limitedLinear 1",
-            "div(phi,omega)": "bounded Gauss limitedLinear 1",
+            "div(phi,k)": f"bounded Gauss {eddies}",
+            "div(phi,omega)": f"bounded Gauss {eddies}",
             "div((nuEff*dev2(T(grad(U)))))": "Gauss linear",
         },
-        "laplacianSchemes": {"default": "Gauss linear corrected"},
+        "laplacianSchemes": {"default": f"Gauss linear {normal}"},
         "interpolationSchemes": {"default": "linear"},
-        "snGradSchemes": {"default": "corrected"},
+        "snGradSchemes": {"default": normal},
         "wallDist": {"method": "meshWave"},
     }
 
 
-def _solution() -> dict[str, Any]:
+def solution(transport: float, *, consistent: bool, relaxed: dict[str, Any]) -> dict[str, Any]:
+    """Return the solvers of a steady run.
+
+    Parameters
+    ----------
+    transport : float
+        By how much residuals of velocity and eddies fall in an iteration.
+    consistent : bool
+        Whether it is SIMPLE-C.
+    relaxed : dict
+        Relaxation of fields and equations.
+    """
     pressure = {"solver": "GAMG", "smoother": "GaussSeidel", "tolerance": 1e-10, "relTol": 0.05}
     return {
         "solvers": {
@@ -169,13 +207,13 @@ def _solution() -> dict[str, Any]:
                 "solver": "smoothSolver",
                 "smoother": "symGaussSeidel",
                 "tolerance": 1e-12,
-                "relTol": 0.05,
+                "relTol": transport,
             },
         },
         "SIMPLE": {
-            "consistent": "yes",
+            "consistent": "yes" if consistent else "no",
             "nNonOrthogonalCorrectors": 0,
             "residualControl": SETTLED,
         },
-        "relaxationFactors": {"equations": {"U": 0.95, '"(k|omega)"': 0.9}},
+        "relaxationFactors": relaxed,
     }

@@ -22,6 +22,7 @@ from bladegen.exports.cases.marching import marched
 from bladegen.exports.cases.outline import Outline, around
 from bladegen.exports.cases.poly_mesh import extruded, write_mesh
 from bladegen.exports.provenance import made_from
+from bladegen.support.arguments import require_within
 from bladegen.support.arrays import Array
 from bladegen.support.values import brief
 from bladegen.surface.wall_spacing import first_height
@@ -172,9 +173,8 @@ def section_case(
     GeometryError
         If a value is out of range, or no mesh can be made.
     """
-    for name, value, (low, high) in (("radius", radius, RADII), ("end", end, ENDS)):
-        if not low <= value <= high:
-            raise GeometryError(f"{name}: got {value:g}, allowed is {low:g} to {high:g}")
+    require_within(radius, "radius", RADII, GeometryError)
+    require_within(end, "end", ENDS, GeometryError)
     flow = flow_at(blade, eta, speed=speed, reynolds=reynolds, alpha=alpha)
     outline = around(blade, eta, cells)
     height = 2.0 * float(first_height(flow.reynolds, flow.chord, y_plus))

@@ -14,7 +14,7 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import GeometryError, visible
-from bladegen.support.arguments import amount
+from bladegen.support.arguments import amount, require_within
 from bladegen.support.arrays import Array, Indices, readonly
 from bladegen.support.values import brief
 from bladegen.surface.grids.grid import Grid
@@ -62,10 +62,9 @@ class Extrusion:
     DEFAULT_HEIGHT: ClassVar[float] = 1e-5  # m: y+ = 1 at a Reynolds number of ten million, about
 
     def __post_init__(self) -> None:
-        for name, (low, high) in (("growth", GROWTHS), ("smoothing", SMOOTHINGS)):
+        for name, allowed in (("growth", GROWTHS), ("smoothing", SMOOTHINGS)):
             value = amount(getattr(self, name), name, GeometryError)
-            if not low <= value <= high:
-                raise GeometryError(f"{name}: got {value:g}, allowed is {low:g} to {high:g}")
+            require_within(value, name, allowed, GeometryError)
         for name in ("first_height", "distance"):
             value = getattr(self, name)
             if value is not None and not amount(value, name, GeometryError) > 0.0:

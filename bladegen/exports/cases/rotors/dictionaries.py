@@ -21,6 +21,7 @@ __all__ = ["constant", "fields", "system"]
 EDDIES = 100.0  # of the viscosity, in the wind
 BEGUN = 1000.0  # where a run begins: walls at rest in still air leave pressure nothing to hold
 OMEGA = 5.0  # wind speeds over the reference chord, see `conditions.OMEGA`
+RELAXED = {"fields": {"p": 0.3}, "equations": {"U": 0.6, '"(k|omega)"': 0.5}}
 
 
 def turbulence(flow: Operation) -> tuple[float, float]:
@@ -91,10 +92,12 @@ def constant(flow: Operation, sense: float) -> dict[str, dict[str, Any]]:
 
 def system(flow: Operation, blades: int, length: float, end: int) -> dict[str, dict[str, Any]]:
     """Return how the equations are solved and what is written; the wake's length in metres."""
+    limited = dict.fromkeys(("grad(U)", "grad(k)", "grad(omega)"), "cellLimited Gauss linear 1")
+    gradients = {"default": "Gauss linear", **limited}
     return {
         "controlDict": _control(flow, blades, end),
-        "fvSchemes": _schemes(),
-        "fvSolution": _solution(),
+        "fvSchemes": dictionaries.schemes(gradients, "upwind", "limited corrected 0.5"),
+        "fvSolution": dictionaries.solution(0.1, consistent=False, relaxed=RELAXED),
         "setFieldsDict": _wake(flow, length),
         "decomposeParDict": {
             "numberOfSubdomains": 2,
@@ -127,16 +130,7 @@ def _control(flow: Operation, blades: int, end: int) -> dict[str, Any]:
                 "pitchAxis": (0, 1, 0),
                 **every,
             },
-            "yPlus": {
-                "type": "yPlus",
-                "libs": ('"libfieldFunctionObjects.so"',),
-                "writeControl": "writeTime",
-            },
-            "residuals": {
-                "type": "solverInfo",
-                "libs": ('"libutilityFunctionObjects.so"',),
-                "fields": ("U", "p", "k", "omega"),
-            },
+            **dictionaries.WATCHED,
         },
     }
 
@@ -154,56 +148,4 @@ def _wake(flow: Operation, length: float) -> dict[str, Any]:
             f"radius {number(flow.radius)}; "
             f"fieldValues (volVectorFieldValue U {vector((slow, 0.0, 0.0))}); }}"
         ],
-    }
-
-
-def _schemes() -> dict[str, Any]:
-    limited = "cellLimited Gauss linear 1"
-    return {
-        "ddtSchemes": {"default": "steadyState"},
-        "gradSchemes": {
-            "default": "Gauss linear",
-            "grad(U)": limited,
-            "grad(k)": limited,
-            "grad(omega)": limited,
-        },
-        "divSchemes": {
-            "default": "none",
-            "div(phi,U)": "bounded Gauss linearUpwind grad(U)",
-            "div(phi,k)": "bounded Gauss upwind",
-            "div(phi,omega)": "bounded Gauss upwind",
-            "div((nuEff*dev2(T(grad(U)))))": "Gauss linear",
-        },
-        "laplacianSchemes": {"default": "Gauss linear limited corrected 0.5"},
-        "interpolationSchemes": {"default": "linear"},
-        "snGradSchemes": {"default": "limited corrected 0.5"},
-        "wallDist": {"method": "meshWave"},
-    }
-
-
-def _solution() -> dict[str, Any]:
-    return {
-        "solvers": {
-            "p": {
-                "solver": "GAMG",
-                "smoother": "GaussSeidel",
-                "tolerance": 1e-10,
-                "relTol": 0.05,
-            },
-            '"(U|k|omega)"': {
-                "solver": "smoothSolver",
-                "smoother": "symGaussSeidel",
-                "tolerance": 1e-12,
-                "relTol": 0.1,
-            },
-        },
-        "SIMPLE": {
-            "consistent": "no",
-            "nNonOrthogonalCorrectors": 0,
-            "residualControl": {'"(p|U|k|omega)"': 1e-6},
-        },
-        "relaxationFactors": {
-            "fields": {"p": 0.3},
-            "equations": {"U": 0.6, '"(k|omega)"': 0.5},
-        },
     }

@@ -11,6 +11,7 @@ from math import degrees, hypot, pi, radians
 from bladegen.blade.blade import Blade
 from bladegen.definition.estimates import AIR
 from bladegen.errors import GeometryError
+from bladegen.support.arguments import require_within
 
 __all__ = ["DENSITY", "REFERENCE", "Operation", "operation_of"]
 
@@ -52,14 +53,11 @@ class Operation:
     told: str = ""
 
     def __post_init__(self) -> None:
-        for name, value, (low, high), unit in (
-            ("wind", self.wind, WINDS, " m/s"),
-            ("tip speed ratio", self.ratio, RATIOS, ""),
-            ("tip speed", self.tip_speed, (0.0, FASTEST), " m/s"),
-            ("pitch", degrees(self.pitch), (-STEEPEST, STEEPEST), " degrees"),
-        ):
-            if not low <= value <= high:
-                raise GeometryError(f"{name}: got {value:g}, allowed is {low:g} to {high:g}{unit}")
+        steep = -STEEPEST, STEEPEST
+        require_within(self.wind, "wind", WINDS, GeometryError, " m/s")
+        require_within(self.ratio, "tip speed ratio", RATIOS, GeometryError)
+        require_within(self.tip_speed, "tip speed", (0.0, FASTEST), GeometryError, " m/s")
+        require_within(degrees(self.pitch), "pitch", steep, GeometryError, " degrees")
 
     @property
     def tip_speed(self) -> float:

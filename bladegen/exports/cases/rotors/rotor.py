@@ -27,6 +27,7 @@ from bladegen.exports.cases.rotors.operation import TURN, Operation, operation_o
 from bladegen.exports.cases.rotors.placing import nose, radii, require_clear, standing
 from bladegen.exports.cases.rotors.sector import Sector
 from bladegen.exports.provenance import made_from
+from bladegen.support.arguments import require_within
 from bladegen.support.arrays import Array
 from bladegen.support.values import brief
 from bladegen.surface.mesh import TriangleMesh
@@ -235,14 +236,10 @@ def rotor_case(
     BladegenError
         If a value is out of range or missing, or the blade does not fit into its sector.
     """
-    for name, value, (low, high) in (
-        ("cells", cells, CELLS),
-        ("growth", growth, GROWTHS),
-        ("radius", radius, RADII),
-        ("end", end, ENDS),
-    ):
-        if not low <= value <= high:
-            raise GeometryError(f"{name}: got {value:g}, allowed is {low:g} to {high:g}")
+    require_within(cells, "cells", CELLS, GeometryError)
+    require_within(growth, "growth", GROWTHS, GeometryError)
+    require_within(radius, "radius", RADII, GeometryError)
+    require_within(end, "end", ENDS, GeometryError)
     rotor = rotor_of(blade, hub_radius=hub_radius)
     if not BLADES[0] <= rotor.blades <= BLADES[1]:
         raise GeometryError(

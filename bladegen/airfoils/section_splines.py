@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.airfoils.slopes import SplineSlopes
 from bladegen.support.arrays import Array
@@ -37,10 +35,7 @@ class SectionSplines:
 
     def values(self, u: Array, derivative: int = 0) -> Array:
         """Return the (m, n) matrix from landmarks to points, or derivatives, at `u`."""
-        from scipy.interpolate import CubicSpline
-
-        matrix: Array = CubicSpline(self.u, np.eye(len(self.u)))(u, derivative)
-        return matrix
+        return self._slopes.values(u, derivative)
 
     def between(self, u: Array, points: Array) -> Array:
         """Return the points (k, m, 2) at `u` (m,) of splines through landmarks (k, n, 2)."""

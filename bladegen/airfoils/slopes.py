@@ -6,16 +6,19 @@ by a factor of about four from landmark to landmark: those nearby decide, to rou
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
 from bladegen.airfoils.fronts import Front
 from bladegen.support.arrays import Array, Indices, readonly
+from bladegen.support.recent import Recent
 from bladegen.support.values import brief
 
 __all__ = ["SplineSlopes"]
 
-REMEMBERED = 8  # sets of landmark parameters whose matrices are kept, 2 MB each for 401
+REMEMBERED = 8  # sets of landmark parameters whose matrices are kept, 7 MB each for 401
+ASKED = 4  # matrices to other places that are kept of one set, 4 MB each for 1200 places
 NEGLIGIBLE = 1e-19  # of the largest share; what lies below is no part of a slope's digits
 
 
@@ -38,11 +41,28 @@ class SplineSlopes:
         return Front(self.u)
 
     @cached_property
-    def matrix(self) -> Array:
-        """The (n, n) matrix from points to slopes."""
+    def _unit(self) -> Any:
+        """The splines through 1 at one landmark and 0 at all others."""
         from scipy.interpolate import CubicSpline
 
-        return readonly(CubicSpline(self.u, np.eye(len(self.u)))(self.u, 1))
+        return CubicSpline(self.u, np.eye(len(self.u)))
+
+    @cached_property
+    def _recent(self) -> Recent[Array]:
+        return Recent(ASKED)
+
+    @cached_property
+    def matrix(self) -> Array:
+        """The (n, n) matrix from points to slopes."""
+        return readonly(self._unit(self.u, 1))
+
+    def values(self, u: Array, derivative: int = 0) -> Array:
+        """Return the (m, n) matrix from landmarks to points, or derivatives, at `u` (m,).
+
+        The last few are remembered: those who measure a surface ask for the same places often.
+        """
+        key = bytes([derivative]) + np.asarray(u, dtype=np.float64).tobytes()
+        return self._recent.get(key, lambda: readonly(self._unit(u, derivative)))
 
     @cached_property
     def tail(self) -> Array:

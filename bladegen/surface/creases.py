@@ -96,10 +96,11 @@ def _jumps(blade: Blade, at: Array, bounds: Array) -> tuple[Array, Array]:
     u = blade.u[::WATCHED]
     gaps = np.diff(bounds)
     step = np.minimum(NEAR * np.minimum(gaps[1:], gaps[:-1]), FARTHEST)
-    here, h = blade.sections(at, u), step[:, None, None]
+    ways = np.arange(-3.0, 4.0)[:, None]
+    made = blade.sections((at + ways * step).reshape(-1), u).reshape(len(ways), len(at), -1, 3)
+    here, h = made[3], step[:, None, None]
     slopes, curves = [], []
-    for side in (-1.0, 1.0):
-        one, two, three = (blade.sections(at + side * k * step, u) for k in (1, 2, 3))
+    for side, (one, two, three) in ((-1.0, made[2::-1]), (1.0, made[4:])):
         slopes.append(side * (18.0 * one - 11.0 * here - 9.0 * two + 2.0 * three) / (6.0 * h))
         curves.append((2.0 * here - 5.0 * one + 4.0 * two - three) / h**2)
     normal = np.cross(np.gradient(here, u, axis=1), slopes[0] + slopes[1])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bladegen.blade.blade import Blade
+from bladegen.blade.remembered import Sectioned
 from bladegen.support.arrays import Array
 from bladegen.surface.net import CLOSED_EDGE, ENDS, SurfaceNet, along_sections
 from bladegen.surface.splines import Fit, Knots, basis
@@ -110,12 +110,12 @@ class Measured:
     volume: float
 
 
-def deviation(net: SurfaceNet, blade: Blade) -> Deviation:
+def deviation(net: SurfaceNet, blade: Sectioned) -> Deviation:
     """Return the deviation of a net's sides, and of the strip between them, from its blade."""
     return Deviation.of(measured(net, blade).parts)
 
 
-def measured(net: SurfaceNet, blade: Blade) -> Measured:
+def measured(net: SurfaceNet, blade: Sectioned) -> Measured:
     """Measure a net against its blade.
 
     That is between its sections and at creases and ends, at other places along the chord than
@@ -153,7 +153,7 @@ def measured(net: SurfaceNet, blade: Blade) -> Measured:
     return Measured(v, u, found, np.concatenate(across), parts, float(between / whole))
 
 
-def watched(knots: Knots, blade: Blade) -> Array:
+def watched(knots: Knots, blade: Sectioned) -> Array:
     """Return places along the chord at which splines with some knots are measured.
 
     The blade's landmarks are among them.

@@ -7,7 +7,7 @@ from the blade itself, at landmarks between those of the net.  Metres.
 
 import numpy as np
 
-from bladegen.blade.blade import Blade
+from bladegen.blade.remembered import Sectioned
 from bladegen.support.arrays import Array
 from bladegen.surface.deviation import Offsets
 from bladegen.surface.net import BEZIER, CLOSED_EDGE, SurfaceNet, cone_volume
@@ -58,7 +58,7 @@ def tip_volume(net: SurfaceNet, tip: Tip) -> float:
     return face + cone_volume(edge_poles(poles), BEZIER, BEZIER)
 
 
-def measured(net: SurfaceNet, blade: Blade, tip: Tip) -> list[Offsets]:
+def measured(net: SurfaceNet, blade: Sectioned, tip: Tip) -> list[Offsets]:
     """Measure root and tip: the planes of flat ends, the arcs of a round tip."""
     middles = 0.5 * (net.u[1:] + net.u[:-1])
     u = np.unique(np.concatenate([[0.0], middles, [0.5, 1.0]]))
@@ -71,7 +71,7 @@ def measured(net: SurfaceNet, blade: Blade, tip: Tip) -> list[Offsets]:
     return [*ends, *_round(net, poles, wanted, u[: len(wanted)])]
 
 
-def _plane(face: str, net: SurfaceNet, blade: Blade, u: Array, v: float) -> Offsets:
+def _plane(face: str, net: SurfaceNet, blade: Sectioned, u: Array, v: float) -> Offsets:
     """Measure the plane of an end section, over all of it."""
     (ours,) = net.evaluate(u, np.array([v]))
     centre = ours.mean(axis=0)

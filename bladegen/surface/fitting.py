@@ -13,6 +13,7 @@ import numpy as np
 
 from bladegen.airfoils.landmarks import landmark_parameters
 from bladegen.blade.blade import Blade
+from bladegen.blade.remembered import Remembered
 from bladegen.support.arrays import Array
 from bladegen.surface.creases import TEAR, Breaks, crease_between
 from bladegen.surface.deviation import Deviation, Measured, Offsets, measured, watched
@@ -88,11 +89,11 @@ def fitted(
         v = Knots(at, np.clip(np.sum(spans == at[:, None], axis=1), 1, DEGREE - 1))
         u = resolving(blade, at, SHARE * tolerance)
     state = _State(blade, breaks, u, _creased(v, breaks), np.full(len(v.at) - 1, np.inf))
-    level, best = np.inf, None
+    known, level, best = Remembered(blade), np.inf, None
     for _ in range(ROUNDS):
         progress(f"fitting {len(state.v.at)} sections")
-        net = on_knots(blade, state.u, state.v)
-        found, ends = measured(net, blade), measured_ends(net, blade, tip)
+        net = on_knots(known, state.u, state.v)
+        found, ends = measured(net, known), measured_ends(net, known, tip)
         deviation = Deviation.of([*found.parts, *ends])
         if best is None or deviation.maximum < best[1].maximum:
             best = net, deviation

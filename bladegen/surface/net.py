@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.blade.blade import Blade
+from bladegen.blade.remembered import Sectioned
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.values import brief
 from bladegen.surface.splines import DEGREE, NOSE, Fit, Knots, basis, joined
@@ -171,7 +171,7 @@ def cone_volume(poles: Array, u_knots: Array, v_knots: Array) -> float:
     return float(wv @ np.sum(surface.evaluate(u, v) * flux, axis=-1) @ wu) / 3.0
 
 
-def on_knots(blade: Blade, u: Knots, v: Knots) -> SurfaceNet:
+def on_knots(blade: Sectioned, u: Knots, v: Knots) -> SurfaceNet:
     """Make a blade's net on given knots.
 
     Sections at all knots along the span are fitted along the chord; between them the net has the
@@ -180,7 +180,7 @@ def on_knots(blade: Blade, u: Knots, v: Knots) -> SurfaceNet:
 
     Parameters
     ----------
-    blade : Blade
+    blade : Blade or Remembered
         What to fit.
     u, v : Knots
         Along the chord, symmetric about 0.5; along the span.

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bladegen.blade.blade import Blade
+from bladegen.blade.remembered import Sectioned
 from bladegen.support.arrays import Array, readonly
 
 __all__ = [
@@ -91,7 +91,7 @@ def round_tip_slopes(given: tuple[Array, ...], changes: tuple[Array, ...]) -> Ar
 TIPS: dict[str, Tip] = {"flat": flat_tip, "round": round_tip}  # as the command line calls them
 
 
-def arcs(blade: Blade, tip: Tip, u: Array | None = None) -> Array | None:
+def arcs(blade: Sectioned, tip: Tip, u: Array | None = None) -> Array | None:
     """Return the arcs' poles at a blade's tip, from the trailing to the leading edge.
 
     Parameters

@@ -115,10 +115,10 @@ esac
 if ! is_done "$stamp" ${others[@]+"${others[@]}"}; then
     printf 'setup: installing bladegen into .venv (about two minutes and 2 GB)\n'
     # Developers and CI use the versions that were tested; users, and `make demo`, the newest allowed.
-    pins=()
-    [ -z "$extra" ] || pins=(--constraint locks/dev.txt)
-    # what is imported is compiled then: compiling all of it takes a minute
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile \
-        ${pins[@]+"${pins[@]}"} --editable ".${extra:+[$extra]}"
+    # The tests compile what they import; a user's commands begin quickly, all is compiled for them.
+    options=()
+    [ -z "$extra" ] || options=(--no-compile --constraint locks/dev.txt)
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+        ${options[@]+"${options[@]}"} --editable ".${extra:+[$extra]}"
     touch "$stamp"
 fi

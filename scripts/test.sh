@@ -15,6 +15,8 @@ state() {
     fi
 }
 
+# a library is compiled once then, and not by each of some hundred processes
+unset PYTHONDONTWRITEBYTECODE
 before="$(state)"
 # compiled loops are kept on the disk: made here once, and not by every process that counts its lines
 for kind in families derivatives; do .venv/bin/python scripts/warm.py "$kind" & done

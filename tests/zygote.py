@@ -81,6 +81,7 @@ def run(job: dict[str, Any], out: int, error: int) -> None:
     for library in job.get("hidden", ()):
         hide(library)
     if "limit" in job:
+        sys.dont_write_bytecode = True  # what is compiled would stay, cut off
         resource.setrlimit(resource.RLIMIT_FSIZE, (job["limit"], job["limit"]))
     if job.get("plain"):
         without_overrides()

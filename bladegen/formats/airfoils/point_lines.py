@@ -8,6 +8,7 @@ third coordinate that is the same in all lines.  Three columns may also be x, y 
 of the other, which become one loop.
 """
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -174,7 +175,7 @@ def _read(lines: Sequence[str], split: Split) -> _Lines:
         if values is not None and len(values) in (2, 3):
             if found.behind:
                 raise _LineError(*found.behind[0])
-            if not np.isfinite(values).all():
+            if not all(map(math.isfinite, values)):
                 raise _LineError(k, line, "must be finite")
             if begun and len(values) != len(found.rows[0][1]):
                 raise _LineError(k, line, f"must hold {len(found.rows[0][1])} numbers as the first")

@@ -20,8 +20,10 @@ def exact(value: float) -> str:
 def aligned(values: Iterable[float | str]) -> str:
     """Return a row of a table whose columns are as wide as a double with all digits."""
     return " ".join(
-        f"{value if isinstance(value, str) else format(value + 0.0, '.16e'):>{WIDTH}}"
-        for value in values
+        [
+            value.rjust(WIDTH) if isinstance(value, str) else f"{value + 0.0:{WIDTH}.16e}"
+            for value in values
+        ]
     )
 
 

@@ -125,8 +125,7 @@ def _tables(lines: list[str]) -> list[_Table]:
     wanted = 0
     for line in lines:
         words = line.split()
-        mark = _MARK.match(line.strip())
-        if mark and not wanted:
+        if not wanted and (mark := _MARK.match(line.strip())):
             marks[mark[1]] = mark[2].strip()[:MOST_WORDS]
         if not words or words[0].startswith("!"):
             continue

@@ -118,8 +118,8 @@ def test_chord_lines_under_a_stretch_are_those_of_the_stretched_sections(seed, f
     shape = baseline.untested(SPACE, t, change, allow_extrapolation=True).shape
     eta = np.linspace(0.1, 0.3, 101)
     curves, thickness = shape.deformed(eta), shape.wanted_thickness(eta)
-    A, c = curves.normalising(thickness)
-    quick, measured = ChordLines.sized(curves, A, c, thickness), ChordLines.of(curves.mapped(A, c))
+    A, c, quick = ChordLines.sized(curves, thickness)
+    measured = ChordLines.of(curves.mapped(A, c))
     assert_allclose(quick.nose, measured.nose, atol=1e-12)
     assert_allclose(quick.edge, measured.edge, atol=1e-12)
     assert_array_equal(quick.alone, measured.alone)

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.airfoils.fronts import Front
-from bladegen.airfoils.noses import other_noses
-from bladegen.airfoils.resizing import LITTLE
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.errors import PerturbationError
 from bladegen.support.arrays import Array, Mask
@@ -79,29 +77,20 @@ class ChordLines:
 
     @classmethod
     def sized(
-        cls, curves: SectionCurves, A: Array, c: Array, thickness: Array | None
-    ) -> "ChordLines":
-        """Return those of sections under the maps that bring them to relative thickness (k,).
+        cls, curves: SectionCurves, thickness: Array | None
+    ) -> tuple[Array, Array, "ChordLines"]:
+        """Return the maps that bring sections to relative thickness (k,), and the lines then.
 
-        A stretch normal to the chord line keeps a nose that is alone, and the line with it;
-        sections that have or may get another are measured again.
+        A stretch normal to the chord line keeps a nose that is alone, and the line with it; where
+        sections have or may get another, it was measured again.
         """
+        A, c, rows, noses, alone_then = curves.sizing(thickness)
         nose, edge = (
             (p[:, None] @ A)[:, 0] + c for p in (curves.leading_edge, curves.trailing_edge)
         )
-        again = curves.may_be_round
-        if thickness is not None:
-            stretched = np.abs(thickness - curves.relative_thickness) > LITTLE * thickness
-            looked = np.flatnonzero(~again & stretched)
-            edges, low = curves.trailing_edge[looked].T, curves.nose_landmarks[looked]
-            again[looked] = other_noses(
-                curves.splines, curves.planes[:, looked], edges, A[looked], low
-            )
-        alone, rows = ~again, np.flatnonzero(again)
-        if rows.size:
-            some = cls.of(curves.take(rows).mapped(A[rows], c[rows]))
-            nose[rows], edge[rows], alone[rows] = some.nose, some.edge, some.alone
-        return cls(nose, edge, alone)
+        alone = ~curves.may_be_round
+        nose[rows], alone[rows] = noses, alone_then
+        return A, c, cls(nose, edge, alone)
 
     def moved(self, motions: Motions) -> "ChordLines":
         """Return the lines after motions."""

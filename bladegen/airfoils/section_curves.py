@@ -10,6 +10,7 @@ largest distance between the two sides measured normal to the chord line, over t
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,12 +24,32 @@ from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, Mask, mapped
 from bladegen.support.values import brief
 
-__all__ = ["SectionCurves"]
+__all__ = ["SectionCurves", "Sizing"]
 
 SETTLED = 1e-13  # of a relative thickness
 SLOWEST, FASTEST = 0.25, 4.0  # growth of a relative thickness with a stretch, both as logarithms
 NEAR = 20  # landmarks that moved, of which it is looked how much they did
 ROUNDING = 1e-15  # of a chord
+
+
+class Sizing(NamedTuple):
+    """Maps that bring sections to size.
+
+    Parameters
+    ----------
+    A, c : (k, 2, 2), (k, 2) arrays
+        The maps, ``points @ A + c``.
+    rows : (m,) array of int
+        The sections that may have a round or another nose then.
+    noses, alone : (m, 2), (m,) arrays
+        Their leading edges then, and where one point is clearly the farthest.
+    """
+
+    A: Array
+    c: Array
+    rows: Indices
+    noses: Array
+    alone: Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +78,11 @@ class SectionCurves:
 
     def normalising(self, relative_thickness: Array | None) -> tuple[Array, Array]:
         """Return the maps of `SectionSplines.normalising`."""
+        A, c, *_ = self.sizing(relative_thickness)
+        return A, c
+
+    def sizing(self, relative_thickness: Array | None) -> Sizing:
+        """Return the maps of `normalising`, and noses that they may have made others."""
         thickness = None if relative_thickness is None else self.thickness
         if thickness is not None and not bool(np.all(thickness > 0.0)):
             raise GeometryError(
@@ -65,7 +91,9 @@ class SectionCurves:
         lead, along = self.leading_edge, self._along
         normal, reach = along[:, ::-1] * (-1.0, 1.0), self.chord
         if thickness is None or relative_thickness is None:
-            return stretching(lead, normal, np.ones_like(reach), reach)
+            none = np.empty(0, dtype=np.int64)
+            maps = stretching(lead, normal, np.ones_like(reach), reach)
+            return Sizing(*maps, none, lead[none], np.empty(0, dtype=bool))
         stretch = relative_thickness * reach / thickness
         A, c = stretching(self.trailing_edge, normal, stretch, reach)
         round_ = self._measured.wide.copy()
@@ -74,9 +102,10 @@ class SectionCurves:
             edges, low = self.trailing_edge[rows].T, self._measured.low[rows]
             round_[rows] = other_noses(self.splines, self.planes[:, rows], edges, A[rows], low)
         rows = np.flatnonzero(round_)
+        noses, alone = lead[rows], ~round_[rows]
         if rows.size:
-            A[rows], c[rows] = self.take(rows)._round(relative_thickness[rows])
-        return A, c
+            A[rows], c[rows], noses, alone = self.take(rows)._round(relative_thickness[rows])
+        return Sizing(A, c, rows, noses, alone)
 
     def mapped(self, A: Array, c: Array) -> "SectionCurves":
         """Return the sections ``points @ A + c``, for maps (k, 2, 2) and (k, 2)."""
@@ -95,6 +124,8 @@ class SectionCurves:
         taken = SectionCurves(self.splines, self.points[rows])
         if "_measured" in vars(self):
             vars(taken)["_measured"] = self._measured.take(rows)
+        if "_places" in vars(self):
+            vars(taken)["_places"] = self._places.take(rows)
         return taken
 
     def reshaped(self, points: Array, behind: int) -> "SectionCurves":
@@ -186,35 +217,53 @@ class SectionCurves:
         """Largest distance between the sides normal to the chord line, over the chord, (k,)."""
         return self.thickness / self.chord
 
-    def _round(self, relative_thickness: Array) -> tuple[Array, Array]:
-        """Return the maps of `normalising` where leading edges may be means of many points.
+    def _round(self, relative_thickness: Array) -> tuple[Array, Array, Array, Mask]:
+        """Return maps, noses and `alone` where leading edges may be means of many points.
 
         The stretch, normal to the sections' own chord lines, moves them, and the chord lines with
         them.  Its amount is the one after which the sections have the relative thickness, measured
-        anew: Newton's method on logarithms, with slopes of the last two steps.  A section whose
-        chord line turns away before it is that thick gets its thickness normal to its own.
+        anew: Newton's method on logarithms, with slopes of the last two steps.  It ends with the
+        step that what is left cannot miss by `SETTLED`: the slope is known by how much it changed.
+        A section whose chord line turns away before it is that thick gets its thickness normal to
+        its own.
         """
+        count = len(relative_thickness)
         edge, normal = self.trailing_edge, self._along[:, ::-1] * (-1.0, 1.0)
-        start, reaches = relative_thickness * self.chord / self.thickness, self.chord.copy()
-        more, missing, steps = (np.zeros(len(edge)) for _ in range(3))  # logarithms
-        rows = np.arange(len(edge))
-        for _ in range(ITERATIONS):
-            stretches = start[rows] * np.exp(more[rows])
-            maps = stretching(edge[rows], normal[rows], stretches, np.ones(len(rows)))
+        start = relative_thickness * self.chord / self.thickness
+        more, missing, steps = (np.zeros(count) for _ in range(3))  # logarithms
+        slopes, reaches, noses = np.full(count, np.nan), np.empty(count), np.empty((count, 2))
+        alone, turned = np.empty(count, dtype=bool), np.zeros(count, dtype=bool)
+
+        def stretched(rows: Indices) -> SectionCurves:
+            amount, none = start[rows] * np.exp(more[rows]), np.ones(len(rows))
+            maps = stretching(edge[rows], normal[rows], amount, none)
             some = SectionCurves(self.splines, mapped(self.points[rows], *maps))
+            noses[rows], alone[rows] = some.leading_edge, ~some.may_be_round
             reaches[rows] = some.chord
+            return some
+
+        rows, last = np.arange(count), []
+        for _ in range(ITERATIONS):
+            some = stretched(rows)
             left = np.log(relative_thickness[rows] * some.chord / some.thickness)
             rate = np.ones(len(rows))
             np.divide(missing[rows] - left, steps[rows], out=rate, where=steps[rows] != 0.0)
             missing[rows], steps[rows] = left, left / np.clip(rate, SLOWEST, FASTEST)
             open_ = np.abs(left) > SETTLED
-            turned = rows[open_ & (rate < 0.0)]
-            more[turned], reaches[turned] = 0.0, self.chord[turned]
-            rows = rows[open_ & (rate >= 0.0)]
+            known = np.abs(left * (rate - slopes[rows])) <= SETTLED
+            turned[rows], slopes[rows] = open_ & (rate < 0.0), rate
+            more[rows] += np.where(open_, steps[rows], 0.0)
+            more[turned] = 0.0
+            last.append(rows[open_ & (known | turned[rows])])
+            rows = rows[open_ & ~(known | turned[rows])]
             if not rows.size:
                 break
-            more[rows] += steps[rows]
-        return stretching(edge, normal, start * np.exp(more), reaches)
+        rows = np.concatenate([rows, *last])
+        if rows.size:
+            stretched(rows)
+        reaches[turned] = self.chord[turned]
+        maps = stretching(edge, normal, start * np.exp(more), reaches)
+        return *maps, noses / reaches[:, None], alone
 
     @property
     def edge_width(self) -> Array:

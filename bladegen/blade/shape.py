@@ -149,8 +149,7 @@ class Shape:
         A, c, lines = joined.sized(thickness)
         alone = lines.alone
         for deformation, curves in zip(self.deformations, stages[1:], strict=True):
-            A, c = curves.normalising(thickness)
-            own = ChordLines.sized(curves, A, c, thickness)
+            A, c, own = ChordLines.sized(curves, thickness)
             alone = alone & own.alone
             if deformation.chord_line == KEPT:
                 motions = own.onto(lines)

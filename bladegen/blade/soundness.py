@@ -138,8 +138,7 @@ class Trial:
         wanted = ruling
         for thickening in shape.thickenings:
             wanted = wanted * thickening(eta)
-        A, c = curves.normalising(wanted)
-        lines = ChordLines.sized(curves, A, c, wanted)
+        A, c, lines = ChordLines.sized(curves, wanted)
         looks = characteristics_along(
             np.concatenate([lines.nose, lines.edge], axis=1),
             affine.restore(curves.points, A, c),

@@ -99,8 +99,7 @@ class EdgeWidths:
 
         Widths hold once the sections are brought to unit chord and to `thickness` (k,).
         """
-        A, c = curves.normalising(thickness)
-        lines = ChordLines.sized(curves, A, c, thickness)
+        A, c, lines = ChordLines.sized(curves, thickness)
         return Wedges.between(curves, A, c, lines, self.over(q))
 
 

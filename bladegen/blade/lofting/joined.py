@@ -58,15 +58,13 @@ class JoinedSections:
 
     @cached_property
     def _sized(self) -> tuple[Array, Array, ChordLines]:
-        A, c = self.curves.normalising(self.ruling)
-        return A, c, ChordLines.sized(self.curves, A, c, self.ruling)
+        return ChordLines.sized(self.curves, self.ruling)
 
     def sized(self, thickness: Array | None) -> tuple[Array, Array, ChordLines]:
         """Return the maps that bring them to relative thickness (k,), and their chord lines."""
         if thickness is self.ruling:
             return self._sized
-        A, c = self.curves.normalising(thickness)
-        return A, c, ChordLines.sized(self.curves, A, c, thickness)
+        return ChordLines.sized(self.curves, thickness)
 
     @cached_property
     def standardised(self) -> tuple[Array, Array, Array]:

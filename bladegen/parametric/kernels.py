@@ -12,7 +12,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["points_gradient", "points_slopes"]
 
-REVISION = 11  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 12  # of all that is compiled with these: with another text it is compiled anew
 BLOCK = 32  # points
 
 
@@ -102,11 +102,11 @@ def summed(rows: Array, ways: Array, j: int, result: Array) -> None:
     """
     count, n = rows.shape
     p = ways.shape[1]
-    block = np.empty((BLOCK, p))
+    block = np.empty((p, BLOCK))
     for first in range(0, n, BLOCK):
         length = min(BLOCK, n - first)
         for g in range(p):
-            column = block[:length, g]
+            column = block[g, :length]
             for i in range(len(column)):
                 column[i] = 0.0
             for q in range(count):
@@ -115,9 +115,9 @@ def summed(rows: Array, ways: Array, j: int, result: Array) -> None:
                     for i in range(len(row)):
                         column[i] += way * row[i]
         for i in range(length):
-            there, here = result[first + i, j], block[i]
+            there = result[first + i, j]
             for g in range(len(there)):
-                there[g] = here[g]
+                there[g] = block[g, i]
 
 
 @compiled

@@ -26,7 +26,7 @@ from bladegen.support.compiled import ONE, ZERO, compiled
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 18  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 19  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -205,11 +205,13 @@ def finish(points: Array, thickness: float) -> None:
 @compiled
 def place(points: Array, to_space: Array, section: Array) -> None:
     """Fill a section (n, 3) with the map (3, 3) of (x, y, 1)."""
-    x, y = points[0], points[1]
-    for j in range(3):
-        a, b, c = to_space[0, j], to_space[1, j], to_space[2, j]
-        for i in range(len(x)):
-            section[i, j] = a * x[i] + b * y[i] + c
+    x, y, flat = points[0], points[1], section.reshape(-1)
+    a, b, c = to_space[0], to_space[1], to_space[2]
+    a0, a1, a2, b0, b1, b2 = a[0], a[1], a[2], b[0], b[1], b[2]
+    for i in range(len(x)):  # all three at once: a line of memory is written once
+        flat[3 * i] = a0 * x[i] + b0 * y[i] + c[0]
+        flat[3 * i + 1] = a1 * x[i] + b1 * y[i] + c[1]
+        flat[3 * i + 2] = a2 * x[i] + b2 * y[i] + c[2]
 
 
 @compiled

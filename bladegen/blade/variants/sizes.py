@@ -5,7 +5,7 @@ function, with the notation and the tolerances there.  What is measured: `sectio
 `nose_measures`.
 """
 
-from math import exp, log
+from math import exp, log, nan
 
 from bladegen.airfoils.resizing import LITTLE
 from bladegen.airfoils.section_curves import FASTEST, SETTLED, SLOWEST
@@ -76,13 +76,15 @@ def rounded(
     edge, along, chord = line
     now, moved, work = room
     more = missing = step = 0.0  # logarithms
-    reach = chord
+    reach, slope, known = chord, nan, False
     for _ in range(ITERATIONS):
         carried(s.c, stretching(edge, along, start * exp(more), 1.0), now)
         combine(values, now, moved)
         some = Section(s.u, s.slopes, now, moved)
         nose, end, _, _, _ = lead(some, work)
         reach = distance(nose, end)
+        if known:
+            break
         own = (end[0] - nose[0]) / reach, (end[1] - nose[1]) / reach
         left = log(target * reach / thickest(some, own, work)[0])
         if abs(left) <= SETTLED:
@@ -91,6 +93,7 @@ def rounded(
         if rate < 0.0:
             more, reach = 0.0, chord
             break
+        known, slope = abs(left * (rate - slope)) <= SETTLED, rate
         missing, step = left, left / min(max(rate, SLOWEST), FASTEST)
         more += step
     total: Numbers = stretching(edge, along, start * exp(more), reach)

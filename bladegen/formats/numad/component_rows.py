@@ -20,11 +20,11 @@ from bladegen.formats.common.text_file import number
 from bladegen.formats.numad.keypoints import Widths
 from bladegen.support.arrays import Array
 
-__all__ = ["SHEET", "Component", "LeftOutError", "component", "text", "widths"]
+__all__ = ["MOST", "SHEET", "Component", "LeftOutError", "component", "text", "widths"]
 
 SHEET = "Components"
-MOST = 1000  # components; the published workbook has 14
-MM, DEGREE = 1e-3, np.pi / 180.0
+MOST = 1000  # components, and groups of them; the published workbook has 14
+MM = 1e-3
 WIDTHS = {"spar cap width": 2, "LE band width": 3, "TE band width": 4, "spar cap offset": 5}
 WIDTH, OFFSET = Range(0.0, 1e5, "mm"), Range(-1e5, 1e5, "mm")
 SPANS, PLIES = Range(0.0, 1.0, "(root to tip)"), Range(0.0, 1e4, "plies")
@@ -47,6 +47,7 @@ class Component:
 
     @property
     def span(self) -> tuple[float, float]:
+        """Span fractions between which it is there."""
         return float(self.thickness.grid[0]), float(self.thickness.grid[-1])
 
 
@@ -87,6 +88,24 @@ def widths(by_row: Mapping[int, Sequence[Cell]], notes: Notes) -> Widths | None:
 def component(
     at: int, cells: Sequence[Cell], known: dict[int, Material], ends: tuple[float, float]
 ) -> Component:
+    """Return the component of a row.
+
+    Parameters
+    ----------
+    at : int
+        The row's number, from 1 on.
+    cells : sequence of cells
+        Of the row, from column A on.
+    known : dict of Material
+        By their numbers in the sheet Materials.
+    ends : pair of float
+        Span fractions of the blade between which those of the sheet count.
+
+    Raises
+    ------
+    LeftOutError
+        If a cell cannot be read; it names the column.
+    """
     group, name = number(text(cells, 0)), text(cells, 1)
     if group is None or not group.is_integer() or not 0 <= group <= MOST:
         shown = text(cells, 0)[:40]
@@ -156,6 +175,7 @@ def _cell(cells: Sequence[Cell], k: int) -> Cell:
 
 
 def text(cells: Sequence[Cell], k: int) -> str:
+    """Return what a cell says without the blanks around it; nothing if it is empty or not there."""
     cell = _cell(cells, k)
     if isinstance(cell, float):
         return f"{cell:.15g}"

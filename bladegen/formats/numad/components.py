@@ -22,6 +22,7 @@ from bladegen.formats.common.document import Notes
 from bladegen.formats.common.table import Rows
 from bladegen.formats.numad import materials as numad_materials
 from bladegen.formats.numad.component_rows import (
+    MOST,
     SHEET,
     Component,
     LeftOutError,
@@ -34,7 +35,6 @@ from bladegen.formats.numad.keypoints import LABELS, SIDES, places
 __all__ = ["SHEET", "read"]
 
 FIRST_ROW, COLUMNS = 7, 9
-MOST = 1000  # components; the published workbook has 14
 DEGREE = np.pi / 180.0
 Keys = dict[str, dict[str, Position]]
 _SHARE = re.compile(r"(\d*\.?\d+)([a-z]+)-([a-z]+)")

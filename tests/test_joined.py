@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import bladegen as bg
 from bladegen.airfoils.chord_lines import ChordLines
 from bladegen.airfoils.landmarks import cosine, landmark_parameters, landmarks, uniform
+from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.airfoils.slopes import SplineSlopes
 from bladegen.blade.changes.affine_change import AffineChange
@@ -60,10 +61,32 @@ def test_sections_are_those_of_the_path_and_measured_as_if_alone(path, definitio
     eta = np.random.default_rng(seed).uniform(size=9)
     as_blended = replace(loft, edge_width=None).sections(eta).curves
     assert_allclose(as_blended.points, affine.restore(*loft.at(eta)), atol=1e-13)
-    curves = loft.sections(eta).curves
+    joined = loft.sections(eta)
+    curves = joined.curves
     alone = loft.splines.fit(np.array(curves.points))
     assert_allclose(curves.leading_edge, alone.leading_edge, atol=1e-13)
     assert_allclose(curves.thickness, alone.thickness, atol=1e-13)
+    known, (A, c, lines) = curves.sizing(joined.ruling), ChordLines.sized(alone, joined.ruling)
+    assert_allclose(known.A, A, atol=1e-11)
+    assert_allclose(known.c, c, atol=1e-11)
+    assert_allclose(ChordLines.sized(curves, joined.ruling)[2].nose, lines.nose, atol=1e-11)
+
+
+def test_sizes_are_remembered_where_an_edge_that_is_opened_leaves_them(monkeypatch):
+    loft = bg.Blade.from_definition(bg.read("nrel5mw")).shape.loft
+    loft.sections(ETA[:1])  # edges of the stations are measured with the first
+    asked, plain = [], SectionCurves._sizing
+    monkeypatch.setattr(
+        SectionCurves,
+        "_sizing",
+        lambda own, thickness: asked.append(len(own.points)) or plain(own, thickness),
+    )
+    joined = loft.sections(ETA)
+    whole, some = asked
+    assert (whole, 0 < some < whole // 2) == (len(ETA), True)
+    joined.curves.normalising(joined.ruling)
+    joined.curves.normalising(np.array(joined.ruling))
+    assert asked == [whole, some, whole]
 
 
 def test_deformed_sections_are_those_of_transport_and_geodesic(blade):

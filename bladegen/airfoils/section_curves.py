@@ -10,12 +10,11 @@ largest distance between the two sides measured normal to the chord line, over t
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from bladegen.airfoils.noses import Noses, farthest, other_noses
-from bladegen.airfoils.resizing import LITTLE, stretching
+from bladegen.airfoils.resizing import LITTLE, Sizing, stretching
 from bladegen.airfoils.slopes import SplineSlopes
 from bladegen.airfoils.thickest import Places, thickest, thickest_again
 from bladegen.curves.cubics import Cubics
@@ -24,32 +23,12 @@ from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, Mask, mapped
 from bladegen.support.values import brief
 
-__all__ = ["SectionCurves", "Sizing"]
+__all__ = ["SectionCurves"]
 
 SETTLED = 1e-13  # of a relative thickness
 SLOWEST, FASTEST = 0.25, 4.0  # growth of a relative thickness with a stretch, both as logarithms
 NEAR = 20  # landmarks that moved, of which it is looked how much they did
 ROUNDING = 1e-15  # of a chord
-
-
-class Sizing(NamedTuple):
-    """Maps that bring sections to size.
-
-    Parameters
-    ----------
-    A, c : (k, 2, 2), (k, 2) arrays
-        The maps, ``points @ A + c``.
-    rows : (m,) array of int
-        The sections that may have a round or another nose then.
-    noses, alone : (m, 2), (m,) arrays
-        Their leading edges then, and where one point is clearly the farthest.
-    """
-
-    A: Array
-    c: Array
-    rows: Indices
-    noses: Array
-    alone: Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +61,18 @@ class SectionCurves:
         return A, c
 
     def sizing(self, relative_thickness: Array | None) -> Sizing:
-        """Return the maps of `normalising`, and noses that they may have made others."""
+        """Return the maps of `normalising`, and noses that they may have made others.
+
+        Those to the thickness that was asked for last are remembered.
+        """
+        asked, known = vars(self).get("_sized", (None, None))
+        if known is None or asked is not relative_thickness:
+            known = self._sizing(relative_thickness)
+            vars(self)["_sized"] = relative_thickness, known
+        sizing: Sizing = known
+        return sizing
+
+    def _sizing(self, relative_thickness: Array | None) -> Sizing:
         thickness = None if relative_thickness is None else self.thickness
         if thickness is not None and not bool(np.all(thickness > 0.0)):
             raise GeometryError(
@@ -160,6 +150,12 @@ class SectionCurves:
                 elif rows.size:
                     height[rows] = result.take(rows).thickness
             vars(result)["_places"] = places._replace(height=height, settled=kept)
+            if "_sized" in vars(self):
+                asked, known = vars(self)["_sized"]
+                others = np.flatnonzero(~kept)
+                wanted = None if asked is None else asked[others]
+                own = result.take(others)._sizing(wanted) if others.size else None
+                vars(result)["_sized"] = asked, known.but(others, own)
         return result
 
     def _untouched(self, other: "SectionCurves", behind: int, room: Indices) -> Mask:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.curves.vectors import cross, dots, lengths
 from bladegen.support.arrays import Array, Mask
 from bladegen.support.values import brief
 
@@ -103,12 +104,11 @@ def _jumps(blade: Blade, at: Array, bounds: Array) -> tuple[Array, Array]:
     for side, (one, two, three) in ((-1.0, made[2::-1]), (1.0, made[4:])):
         slopes.append(side * (18.0 * one - 11.0 * here - 9.0 * two + 2.0 * three) / (6.0 * h))
         curves.append((2.0 * here - 5.0 * one + 4.0 * two - three) / h**2)
-    normal = np.cross(np.gradient(here, u, axis=1), slopes[0] + slopes[1])
-    length = np.linalg.norm(normal, axis=-1, keepdims=True)
+    normal = cross(np.gradient(here, u, axis=1), slopes[0] + slopes[1])
+    length = lengths(normal)[..., None]
     normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
     turns, bends = (
-        np.abs(np.sum((behind - ahead) * normal, axis=-1)).max(axis=1)
-        for ahead, behind in (slopes, curves)
+        np.abs(dots(behind - ahead, normal)).max(axis=1) for ahead, behind in (slopes, curves)
     )
     return turns, bends
 

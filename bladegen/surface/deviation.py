@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bladegen.blade.remembered import Sectioned
+from bladegen.curves.vectors import cross, dots, lengths
 from bladegen.support.arrays import Array
 from bladegen.surface.net import CLOSED_EDGE, ENDS, SurfaceNet, along_sections
 from bladegen.surface.splines import Fit, Knots, basis
@@ -131,16 +132,16 @@ def measured(net: SurfaceNet, blade: Sectioned) -> Measured:
     weights, volumes = np.gradient(v), []
     for some in np.array_split(v, -(-len(v) * len(u) // CHUNK)):
         points, along = blade.sections(some, u), basis(net.v_knots, some)
-        flux = np.cross(
+        flux = cross(
             net.combined(bend, along), net.combined(fit.matrix, basis(net.v_knots, some, 1))
         )
-        area = np.linalg.norm(flux, axis=-1)
+        area = lengths(flux)
         normal = flux / area[..., None]
-        offsets.append(np.sum((points - net.combined(fit.matrix, along)) * normal, axis=-1))
-        cones = np.sum(points * flux, axis=-1) / 3.0
+        offsets.append(dots(points - net.combined(fit.matrix, along), normal))
+        cones = dots(points, flux) / 3.0
         volumes.append(np.trapezoid(np.stack([area * offsets[-1], cones]), u))
         left = points - along_sections(fit.matrix, fit(points))
-        across.append(np.sum(left * normal, axis=-1))
+        across.append(dots(left, normal))
     found = np.concatenate(offsets)
     eta, places = np.broadcast_arrays(v[:, None], u)
     sides = [
@@ -168,10 +169,10 @@ def _strip(net: SurfaceNet, ends: Array, v: Array) -> Offsets:
     ours, along = net.evaluate(ENDS, v), net.evaluate(ENDS, v, nv=1)
     share = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
     across = np.stack([1.0 - share, share], axis=-1)  # of the suction side's end, the pressure's
-    normal = np.cross(across @ along, (ours[:, 1] - ours[:, 0])[:, None])
-    length = np.linalg.norm(normal, axis=-1)
-    missed = np.abs(np.sum(across @ (ends - ours) * normal, axis=-1))
-    wide = np.linalg.norm(ours[:, 1] - ours[:, 0], axis=-1) > CLOSED_EDGE
+    normal = cross(across @ along, (ours[:, 1] - ours[:, 0])[:, None])
+    length = lengths(normal)
+    missed = np.abs(dots(across @ (ends - ours), normal))
+    wide = lengths(ours[:, 1] - ours[:, 0]) > CLOSED_EDGE
     distances = missed[wide] / length[wide]
     eta = np.broadcast_to(v[wide, None], distances.shape)
     u = np.broadcast_to(np.round(share), distances.shape)

@@ -14,6 +14,7 @@ import numpy as np
 from bladegen.airfoils.landmarks import landmark_parameters
 from bladegen.blade.blade import Blade
 from bladegen.blade.remembered import Remembered
+from bladegen.curves.vectors import cross, lengths
 from bladegen.support.arrays import Array
 from bladegen.surface.creases import TEAR, Breaks, crease_between
 from bladegen.surface.deviation import Deviation, Measured, Offsets, measured, watched
@@ -122,7 +123,7 @@ def resolving(blade: Blade, v: Array, most: float) -> Knots:
         poles = fit(points)
         left = points - along_sections(fit.matrix, poles)
         along = along_sections(basis(u.sequence, places, 1), poles)
-        off = np.linalg.norm(np.cross(left, along), axis=-1) / np.linalg.norm(along, axis=-1)
+        off = lengths(cross(left, along)) / lengths(along)
         finer = _taken_apart(u, _worst(u.at, places, off.max(axis=0)), most)
         if len(finer.at) == len(u.at):
             break

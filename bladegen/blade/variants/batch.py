@@ -31,6 +31,7 @@ __all__ = ["FAULTS", "LOST_THICKNESS", "Batch", "SectionBatch"]
 
 LOST_THICKNESS = 0.2  # of the thickness before, which a deformation must leave
 TURNED_EDGE = -1e-6  # chord; an edge that is open the wrong way by more has turned over
+SINGLE: type = np.float32  # of no sections: as families have them, so that loops are compiled once
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,7 +223,8 @@ class SectionBatch:
         raw, target = self.coefficients(t), self.target(change, len(t))
         chord, to_space, measures = np.empty((0, 0)), np.empty((0, 0, 0, 0)), np.empty((0, 0, 0))
         looks = np.empty((len(t), len(self.eta), len(CHARACTERISTICS)))
-        faults = self._made(raw, target, chord, chord, to_space, to_space, measures, looks)
+        none: Array = np.empty((0, 0, 0, 0), dtype=SINGLE)
+        faults = self._made(raw, target, chord, chord, to_space, none, measures, looks)
         return faults.T, target.T, looks
 
     def oddities(self, looks: Array) -> Oddities:

@@ -54,6 +54,17 @@ def test_halves_are_the_whole(seed):
     assert_allclose(suction.poles[-1], pressure.poles[0], atol=1e-14)
 
 
+@pytest.mark.parametrize("ends", [(0.0, 0.4), (0.1, 0.5), (0.37, 1.0), (0.0, 1.0)])
+def test_a_part_of_the_span_is_the_same_surface(ends):
+    whole = net_through(cone(0.5), U, V)
+    part, v = whole.between(*ends), np.linspace(*ends, 9)
+    assert_allclose(part.evaluate(U, v), whole.evaluate(U, v), atol=1e-12)
+    assert (part.v[0], part.v[-1]) == ends
+    assert len(part.v_knots) == part.poles.shape[1] + 4
+    low, high = (10.0 * end * (1.0 - 0.5 * end + end**2 / 12.0) for end in ends)
+    assert_allclose(part.volume(), np.pi * 0.5 * 0.25 * (high - low), rtol=1e-5)
+
+
 @pytest.mark.parametrize("top", [1.0, 0.5])
 def test_volume_of_an_elliptic_cone(top):
     fitted = net_through(cone(top), U, V)

@@ -1,7 +1,8 @@
-"""Structure in CAD: the skin cut where layers end, webs between its sides, one STEP assembly."""
+"""Structure in CAD: skin cut where layers end, webs, inner surface, one STEP assembly."""
 
 import json
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -64,7 +65,7 @@ def test_faces_have_the_areas_of_layers_and_webs(made):
     assert parts.areas.keys() == wanted.keys()
     for name, area in wanted.items():
         assert_allclose(parts.areas[name], area, rtol=0.01, err_msg=name)
-    assert not parts.findings
+    assert all(str(said).startswith("inner surface: limited") for said in parts.findings)
     edges = [name for name, *_ in parts.skin.pieces if name.startswith("trailing edge")]
     assert "trailing edge: TE_reinforcement_SS + TE_reinforcement_PS 1" in edges
 
@@ -118,6 +119,24 @@ def _place(vertex):
     return BRep_Tool.Pnt_s(TopoDS.Vertex_s(vertex))
 
 
+def test_the_inner_surface_is_a_sheet_inside_of_the_skin(made):
+    parts = made[2]
+    assert shapes.is_valid(parts.inner.shape)
+    sides = ["suction side", "pressure side", "trailing edge"]
+    assert [name for name, *_ in parts.inner.pieces] == [f"inner surface: {one}" for one in sides]
+    edges = shapes.members(parts.inner.shape, "edge")
+    met = [a for a, b in combinations(edges, 2) if a.IsSame(b)]
+    assert (len(edges), len(met)) == (12, 3)  # the nose's, and both of the strip
+    figures = parts.wall
+    skin = [face for name, face, _ in parts.skin.pieces if name not in ("root", "tip")]
+    outer = sum(map(shapes.area, skin)) / 1e6
+    assert 0.95 * outer < figures["area_m2"] < 0.995 * outer
+    assert_allclose(figures["wall_m3"], figures["layers_m3"], rtol=0.025)
+    assert 0.0 < figures["without_room_m3"] < 0.015 * figures["layers_m3"]
+    assert figures["deviation_m"] <= 1e-3
+    assert (figures["from_eta"], figures["to_eta"]) == (0.0, 1.0)
+
+
 def test_bays_end_where_webs_do_and_lines_do_not_cross(made):
     blade, solid, _ = made
     bays = bays_of(blade.layup, solid.net.v)
@@ -149,13 +168,13 @@ def test_the_file_is_one_solid_with_named_faces_and_sheets(made, tmp_path):
         write_structure(parts, blade.name, path, timestamp="2026-01-02T03:04:05")
     assert path.read_bytes() == (tmp_path / "a.step").read_bytes()
     text = "".join(path.read_text().split())  # lines break within names
-    for part in (*parts.webs, parts.skin):
-        assert f"PRODUCT('{part.name}'" in text
-    for name, *_ in parts.skin.pieces:
+    for part in (*parts.webs, parts.skin, parts.inner):
+        assert f"PRODUCT('{''.join(part.name.split())}'" in text
+    for name, *_ in (*parts.skin.pieces, *parts.inner.pieces):
         assert f"ADVANCED_FACE('{''.join(name.split())}'" in text
     figures = solid_figures(exchange.read(path))
     assert [figures[key] for key in ("solids", "closed", "valid")] == [1, True, True]
-    assert figures["sheets_beside"] == len(parts.webs)
+    assert figures["sheets_beside"] == len(parts.webs) + 1
     assert_allclose(figures["volume_m3"], solid.volume, rtol=1e-6)
 
 
@@ -166,6 +185,8 @@ def test_a_command_writes_it_beside_the_solid_and_check_reads_it(tmp_path, forei
     path = tmp_path / "iea15mw-perturbed.structure.step"
     report = json.loads((tmp_path / "iea15mw-perturbed.report.json").read_text())
     assert set(LAYERS) <= report["structure"]["faces_m2"].keys()
+    assert report["structure"]["inner_surface"]["wall_m3"] > 50.0
+    assert any("inner surface: limited" in said for said in report["remarks"])
     run = CliRunner().invoke(commands.app, ["check", str(path)])
     assert run.exit_code == 0, run.output
     assert "sheets beside" in run.output

@@ -29,7 +29,8 @@ CURVES, STRUCTURE = "curves.step", "structure.step"
 Inside = Annotated[
     bool,
     typer.Option(
-        "--structure", help="Skin cut where layers end and webs too, NAME.structure.step."
+        "--structure",
+        help="Skin cut where layers end, webs and inner surface too, NAME.structure.step.",
     ),
 ]
 Curves = Annotated[

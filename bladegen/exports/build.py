@@ -210,7 +210,8 @@ def _measure(report: dict[str, Any], products: Products, kind: Kind, path: Path)
         shell = products.shell
         report["shell"] = {**shell.quality, "mass_kg": shell.mass, "sections": len(shell.sections)}
     elif kind is Kind.structure:
-        report["structure"] = {"faces_m2": products.inside.areas}
+        inside = products.inside
+        report["structure"] = {"faces_m2": inside.areas, "inner_surface": inside.wall}
     elif path.suffix in _MESHES:
         figures = checks.mesh_figures(mesh_files.read(path))
         report.setdefault("meshes", {})[suffix_of(path).lstrip(".")] = figures

@@ -16,6 +16,7 @@ from bladegen.exports.options import Kind, Options
 from bladegen.exports.provenance import Provenance, made_from
 from bladegen.surface import mesh
 from bladegen.surface.grids import grid
+from bladegen.surface.inner.inner import TOLERANCE
 from bladegen.surface.tips import flat_tip
 from bladegen.surface.volumes import volume
 
@@ -64,10 +65,10 @@ class Products:
 
     @cached_property
     def inside(self) -> assembly.Inside:
-        """The skin, cut where layers end, and the webs."""
+        """The skin, cut where layers end, the webs, and the inner surface."""
         layup, solid = self._layup("a structure in CAD"), self.solid
         self.progress("cutting the skin where layers end")
-        made = assembly.inside(solid, layup)
+        made = assembly.inside(solid, layup, max(TOLERANCE, self.options.tolerance))
         self.remarks.extend(made.findings)
         if self.options.tip is not flat_tip:
             self.remarks.append(Finding("structure", "its skin ends flat, without the round tip"))

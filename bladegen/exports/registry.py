@@ -63,7 +63,7 @@ FORMATS = {
     ),
     ".structure.step": Format(
         Kind.structure,
-        "STEP, skin cut where layers end and webs, an assembly, mm",
+        "STEP, skin cut where layers end, webs and inner surface, an assembly, mm",
         solids.write_structure,
     ),
     ".stl": Format(Kind.triangles, "STL, binary triangles, m (or mm)", surfaces.write_stl),

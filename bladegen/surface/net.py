@@ -118,6 +118,21 @@ class SurfaceNet:
             SurfaceNet(behind, np.concatenate([clamp, spline.t[first + DEGREE :]]), self.v_knots),
         )
 
+    def between(self, first: float, last: float) -> "SurfaceNet":
+        """Cut the surface at two spans, exactly, by knot insertion; return what lies between."""
+        from scipy.interpolate import BSpline
+
+        if (first, last) == (self.v_knots[0], self.v_knots[-1]):
+            return self
+        spline = BSpline(self.v_knots, self.poles.swapaxes(0, 1), DEGREE)
+        for place in (first, last):
+            missing = DEGREE + 1 - int(np.count_nonzero(spline.t == place))
+            spline = spline.insert_knot(place, missing) if missing > 0 else spline
+        low = int(np.searchsorted(spline.t, first))
+        high = int(np.searchsorted(spline.t, last))
+        poles = spline.c[low:high].swapaxes(0, 1)
+        return SurfaceNet(poles, self.u_knots, spline.t[low : high + DEGREE + 1])
+
     def volume(self) -> float:
         """Return the volume [m3] inside the surface, its flat ends and its trailing edge.
 
@@ -128,8 +143,9 @@ class SurfaceNet:
         total = cone_volume(self.poles, self.u_knots, self.v_knots)
         total += cone_volume(strip, BEZIER, self.v_knots)
         u, wu = _quadrature(self.u_knots)
-        rows, slopes = self.evaluate(u, ENDS), self.evaluate(u, ENDS, nu=1)
-        corners = self.evaluate(ENDS, ENDS)
+        ends = self.v[[0, -1]]
+        rows, slopes = self.evaluate(u, ends), self.evaluate(u, ends, nu=1)
+        corners = self.evaluate(ENDS, ends)
         for row, slope, (first, _), sign in zip(rows, slopes, corners, (1, -1), strict=True):
             doubled = wu @ np.cross(row - first, slope)
             total += sign * float(first @ doubled) / 6.0

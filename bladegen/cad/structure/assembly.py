@@ -1,7 +1,8 @@
-"""A blade's skin cut where layers end, and its webs, as named parts of a STEP assembly.
+"""A blade's skin cut where layers end, its webs and its inner surface, as named parts of STEP.
 
 The skin is the solid's own surface: zones are cut out of it by curves in its parameters, so that
-nothing moves.  Webs are ruled between the same curves on both sides.  Millimetres; OCP comes late.
+nothing moves.  Webs are ruled between the same curves on both sides; the inner surface is a net of
+its own (`bladegen.surface.inner`).  Millimetres; OCP comes late.
 """
 
 from collections import Counter
@@ -18,9 +19,11 @@ from bladegen.cad.pieces import Patch
 from bladegen.cad.shapes import MILLIMETRES, area
 from bladegen.cad.solids import Solid, cap, closed, edge_strip
 from bladegen.cad.step_documents import Part
+from bladegen.cad.structure.inner_part import inner_part
 from bladegen.cad.structure.zones import Bay, bays_of
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array
+from bladegen.surface.inner.inner import TOLERANCE
 from bladegen.surface.regions import EDGE, ROOT, TIP, colour
 
 __all__ = ["Inside", "inside", "write_structure"]
@@ -41,7 +44,7 @@ LOOKED_AT = 4001  # spans
 
 @dataclass(frozen=True, eq=False)
 class Inside:
-    """A blade's skin and webs.
+    """A blade's skin, webs and inner surface.
 
     Parameters
     ----------
@@ -50,14 +53,22 @@ class Inside:
         that cover a part of the section.
     webs : tuple of Part
         Faces between the sides.
+    inner : Part or None
+        The inner side of the skin's wall, open at root and tip; None where it cannot be had.
+    wall : dict of float
+        Area of the inner surface [m2], volume between it and the skin, of the skin's layers, and
+        of those that have no room [m3], and how far it strays from them [m].
     areas : dict of float
         Area [m2] of the faces of each layer of the skin, and of each web.
     findings : tuple of Finding
-        Layers whose faces are larger or smaller than they are by more than `MISSED`.
+        Layers whose faces are larger or smaller than they are by more than `MISSED`, and what is
+        to be said of the inner surface.
     """
 
     skin: Part
     webs: tuple[Part, ...]
+    inner: Part | None
+    wall: dict[str, float]
     areas: dict[str, float]
     findings: tuple[Finding, ...]
 
@@ -76,8 +87,17 @@ class _Zone:
         return f"{self.side}: {' + '.join(self.partly)}" if self.partly else self.side
 
 
-def inside(solid: Solid, layup: Layup) -> Inside:
-    """Return the skin and webs of a blade whose solid ends flat.
+def inside(solid: Solid, layup: Layup, tolerance: float = TOLERANCE) -> Inside:
+    """Return the skin, webs and inner surface of a blade whose solid ends flat.
+
+    Parameters
+    ----------
+    solid : Solid
+        The blade's.
+    layup : Layup
+        Its layers and webs.
+    tolerance : float
+        Largest distance of the inner surface to where layers end aimed at [m].
 
     Raises
     ------
@@ -122,7 +142,8 @@ def inside(solid: Solid, layup: Layup) -> Inside:
         areas.update(dict.fromkeys(zone.layers, area(zone.face) / MILLIMETRES**2))
     skin, found = _skin(solid.name, zones, others, areas), _missed(layup, areas)
     areas.update({part.name: area(part.shape) / MILLIMETRES**2 for part in sheets})
-    return Inside(skin, sheets, dict(areas), found)
+    inner, wall, said = inner_part(net, layup, tolerance)
+    return Inside(skin, sheets, inner, wall, dict(areas), found + said)
 
 
 def _skin(
@@ -201,11 +222,12 @@ def _across(on: Any, between: Array, v: float, corners: Array) -> list[Any]:
 
 
 def write_structure(made: Inside, name: str, path: Path, **options: Any) -> None:
-    """Write skin and webs as a STEP assembly; options as of `step_documents`.
+    """Write all parts as a STEP assembly; options as of `step_documents`.
 
     Raises
     ------
     CadError
         If OCCT cannot write the file.
     """
-    step_documents.write_parts(f"{name} structure", [made.skin, *made.webs], path, **options)
+    parts = [made.skin, *made.webs, *([] if made.inner is None else [made.inner])]
+    step_documents.write_parts(f"{name} structure", parts, path, **options)

@@ -33,7 +33,7 @@ def write_curves(products: Products, path: Path) -> None:
 
 
 def write_structure(products: Products, path: Path) -> None:
-    """Write skin and webs as a STEP assembly."""
+    """Write skin, webs and inner surface as a STEP assembly."""
     options = products.options
     told = {"schema": options.step_schema, **options.told}
     assembly.write_structure(products.inside, products.blade.name, path, **told)

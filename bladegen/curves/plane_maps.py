@@ -14,6 +14,7 @@ from bladegen.support.compiled import compiled
 __all__ = [
     "Numbers",
     "between",
+    "both",
     "carried",
     "carry",
     "combine",
@@ -73,6 +74,14 @@ def carry(points: Array, total: Numbers) -> None:
         p, q = x[i], y[i]
         x[i] = a * p + c * q + e
         y[i] = b * p + d * q + f
+
+
+@compiled
+def both(line: Numbers, total: Numbers) -> Numbers:
+    """Return two points (4,) mapped."""
+    a, b, c, d, e, f = total
+    x, y, p, q = line
+    return a * x + c * y + e, b * x + d * y + f, a * p + c * q + e, b * p + d * q + f
 
 
 @compiled

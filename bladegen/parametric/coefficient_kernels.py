@@ -26,7 +26,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["linearised", "lines_slopes"]
 
-REVISION = 13  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 14  # of all that is compiled with these: with another text it is compiled anew
 TERMS = 20  # of the series of cos S and sin S / S; principal angles below 2 rad need 14
 
 
@@ -117,7 +117,7 @@ def sized(
     points, moved, work, spare = room
     combine(values, c, points)
     section = Section(u, slopes, c, points)
-    total, _, along, turned = sizing(section, values, target, now, moved, work)
+    total, _, _, along, turned = sizing(section, values, target, now, moved, work)
     turns = np.zeros(len(raw) + 1 if turned else 0)
     if turned and len(raw):
         before = gradients(section, values, work, rows, spare)

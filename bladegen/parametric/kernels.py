@@ -12,8 +12,8 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["points_gradient", "points_slopes"]
 
-REVISION = 12  # of all that is compiled with these: with another text it is compiled anew
-BLOCK = 32  # points
+REVISION = 13  # of all that is compiled with these: with another text it is compiled anew
+BLOCK = 128  # points
 
 
 @compiled
@@ -98,7 +98,7 @@ def mixed(one: Array, two: Array, a: float, b: float, c: float, result: Array) -
 def summed(rows: Array, ways: Array, j: int, result: Array) -> None:
     """Fill ``result[:, j]`` (n, p) of (n, 3, p) with rows (q, n) times ways (q, p), mostly zeros.
 
-    Block by block of points, so that what is written lies in the processor's nearest cache.
+    Block by block of points, so that what is summed lies in the processor's nearest cache.
     """
     count, n = rows.shape
     p = ways.shape[1]

@@ -19,14 +19,14 @@ from bladegen.airfoils.characteristics import characterise
 from bladegen.blade.edges import WINDOW
 from bladegen.blade.variants.section_measures import Section
 from bladegen.blade.variants.sizes import chord_line, sizing
-from bladegen.curves.plane_maps import Numbers, carried, carry, combine, motion_of, onto
+from bladegen.curves.plane_maps import Numbers, both, carried, carry, combine, motion_of, onto
 from bladegen.curves.separation import ANGLES, APART, FLAT
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.compiled import ONE, ZERO, compiled
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "made"]
 
-REVISION = 19  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 20  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -96,12 +96,17 @@ def made(
             if len(known):
                 known[k, b] = SOUND if laddered(points) else compared(points, moved)
             section = Section(u, slopes[k], c, points)
-            total, own[k, b], _, _ = sizing(section, values[k], target[k, b], now, moved, work)
+            total, own[k, b], line, _, turned = sizing(
+                section, values[k], target[k, b], now, moved, work
+            )
             if not len(sections) and not len(looks):
                 continue
             carry(points, total)
-            carried(c, total, now)
-            line = chord_line(Section(u, slopes[k], now, points), work)
+            if turned:
+                carried(c, total, now)
+                line = chord_line(Section(u, slopes[k], now, points), work)
+            else:  # a stretch normal to it keeps the line (`ChordLines.sized`)
+                line = both(line, total)
             if len(looks):
                 characterise(points, line, flat[k, b], moved, work, looks[b, k])
             if len(sections):

@@ -24,11 +24,12 @@ Room = tuple[Array, Array, Array]  # for coefficients (F, 2), points (2, n), and
 @compiled
 def sizing(
     s: Section, values: Array, target: float, now: Array, moved: Array, work: Array
-) -> tuple[Numbers, float, Numbers, bool]:
+) -> tuple[Numbers, float, Numbers, Numbers, bool]:
     """Return the map that brings a section to size, and the relative thickness it has.
 
     Maps are (a, b, c, d, e, f): x' = a x + c y + e and y' = b x + d y + f.  Returned besides are
-    the direction of the chord line that it has, and whether the map may turn it.
+    the chord line that it has, leading edge and trailing-edge midpoint, its direction, and whether
+    the map may turn it.
     """
     nose, edge, _, wide, best = lead(s, work)
     length = distance(nose, edge)
@@ -40,7 +41,7 @@ def sizing(
         wide = other_nose(s, edge, total, best, work)
     if wide:
         total = rounded(s, values, (edge, along, length), target, stretch, (now, moved, work))
-    return total, thickness / length, along, wide
+    return total, thickness / length, (nose[0], nose[1], edge[0], edge[1]), along, wide
 
 
 @compiled

@@ -355,6 +355,34 @@ def test_long_names_stay_apart_and_lines_short(flat):
         assert len(set(heads)) == len(heads)
 
 
+def test_walls_of_even_material_weigh_what_their_laminates_do(model):
+    """CalculiX gives a wall the thickness between nodes that its shape functions have."""
+    text = "\n".join(inp_lines(model))
+    nodal = np.zeros(len(model.mesh.points))
+    said = text.split("*NODAL THICKNESS\n")[1].split("\n*")[0]
+    for line in said.splitlines():
+        node, thickness = line.split(", ")
+        nodal[int(node) - 1] = float(thickness)
+    densities = [float(one) for one in re.findall(r"\*DENSITY\n(\S+)", text)]
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    xi, eta = (one.reshape(-1) for one in np.meshgrid(nodes, nodes))
+    corners = model.mesh.points[model.mesh.quads]
+    tangents = slopes(xi, eta) @ corners[:, None]
+    sizes = np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1)
+    thick = nodal[model.mesh.quads] @ shapes(xi, eta).T
+    walls = (sizes * thick) @ np.outer(weights, weights).reshape(-1)
+    materials = model.structure.by_name
+    sections = [one for one in model.sections if one.layers]
+    assert len(sections) > 300
+    for section, density in zip(sections, densities, strict=True):
+        if section.skin:
+            area = sum(
+                t * materials[model.structure.layers[i].material].density for i, t in section.layers
+            )
+            wanted = area * model.areas[section.elements].sum()
+            assert_allclose(density * walls[section.elements].sum(), wanted, rtol=1e-4)
+
+
 def test_walls_do_not_fold_inside(model):
     thick = nodal_thickness(model)
     mesh = model.mesh

@@ -16,7 +16,12 @@ import numpy as np
 
 from bladegen.blade.layup.shell.laminates import even, moduli
 from bladegen.blade.layup.shell.model import Section, ShellModel
-from bladegen.blade.layup.shell.quality import corner_normals, shared_normals, wall_jacobians
+from bladegen.blade.layup.shell.quality import (
+    corner_normals,
+    integrals,
+    shared_normals,
+    wall_jacobians,
+)
 from bladegen.definition.structure.structure import Material
 from bladegen.errors import ExportError
 from bladegen.support.arrays import Array, Indices
@@ -94,14 +99,15 @@ def _orientation(name: str, model: ShellModel, section: Section, angle: float) -
 def _evenly(model: ShellModel, sections: list[Section]) -> Iterator[str]:
     materials = model.structure.by_name
     nodal = nodal_thickness(model)
-    quads, areas, total = model.mesh.quads, model.areas, model.thickness.sum(axis=0)
+    areas, total = model.areas, model.thickness.sum(axis=0)
+    volumes = integrals(model.mesh.points, model.mesh.quads, nodal)
     yield "*NODAL THICKNESS"
     for i in np.flatnonzero(nodal > 0.0).tolist():
         yield f"{i + 1}, {nodal[i]:.7g}"
     for section in sections:
         name, here = _name(section.name), section.elements
         if section.skin:
-            thickness = float(np.average(nodal[quads[here, :4]].mean(axis=1), weights=areas[here]))
+            thickness = float(volumes[here].sum() / areas[here].sum())
         else:
             thickness = float(total[model.mesh.part == model.mesh.part[here[0]]].max())
         stack = [

@@ -10,6 +10,7 @@ __all__ = [
     "areas",
     "corner_normals",
     "figures",
+    "integrals",
     "shapes",
     "shared_normals",
     "slopes",
@@ -92,10 +93,16 @@ def wall_jacobians(outer: Array, wall: Array) -> Array:
 
 def areas(points: Array, quads: Indices) -> Array:
     """Return the areas (m,) of elements [m2], by 3 x 3 Gauss points."""
+    return integrals(points, quads, np.ones(len(points)))
+
+
+def integrals(points: Array, quads: Indices, values: Array) -> Array:
+    """Return integrals (m,) over elements of what is given at nodes (n,), by 3 x 3 Gauss points."""
     nodes, weights = np.polynomial.legendre.leggauss(3)
-    tangents = slopes(*np.meshgrid(nodes, nodes)) @ points[quads][:, None, None]
+    xi, eta = (one.reshape(-1) for one in np.meshgrid(nodes, nodes))
+    tangents = slopes(xi, eta) @ points[quads][:, None]
     sizes = np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1)
-    found: Array = weights @ sizes @ weights
+    found: Array = (sizes * (values[quads] @ shapes(xi, eta).T)) @ np.kron(weights, weights)
     return found
 
 

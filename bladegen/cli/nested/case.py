@@ -76,7 +76,7 @@ class Meshing:
     """The mesh, of a rotor and of a section."""
 
     y_plus: Annotated[
-        float | None, typer.Option(help="Of the first cells' centres.", show_default="1000; 2")
+        float | None, typer.Option(help="Of the first cells' centres.", show_default="300; 2")
     ] = None
     cells: Annotated[
         int | None,
@@ -86,7 +86,7 @@ class Meshing:
     ] = None
     growth: Annotated[
         float | None,
-        typer.Option(help="Of layers' heights, outward.", show_default="1.3; 1.15"),
+        typer.Option(help="Of layers' heights, outward.", show_default="1.6; 1.15"),
     ] = None
     radius: Annotated[
         float | None,

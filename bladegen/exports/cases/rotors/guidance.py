@@ -23,8 +23,8 @@ def readme(
         "background": f"{figures['background_cells']} cells, {figures['background_cell_m']:.3g} m "
         f"around the blade; far field {figures['far_field_radii']:g} tip radii away",
         "cells on the blade": f"{figures['surface_cell_m']:.3g} m ({figures['level']} halvings), "
-        f"{figures['around']} around the section at 75 % span, half of it around the "
-        "leading edge; twice as long along the span",
+        f"{figures['around']} around the section at 75 % span, a quarter of it at "
+        "both edges; three times as long along the span",
         "layers": f"{figures['layers']}, the first {figures['first_height_mm']:.3g} mm high (y+ of "
         f"its centre about {figures['y_plus']:g} at 75 % span), growth {figures['growth']:g}",
     }

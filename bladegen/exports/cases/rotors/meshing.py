@@ -14,16 +14,17 @@ from bladegen.support.arrays import Array
 from bladegen.surface.mesh_files import region_word
 from bladegen.surface.regions import PRESSURE, SUCTION
 
-__all__ = ["EDGE", "SURFACE", "Layers", "snappy"]
+__all__ = ["EDGES", "SURFACE", "Layers", "snappy"]
 
-SURFACE, EDGE = "blade.obj", "leading_edge.obj"  # in constant/triSurface
-ROUNDED = 0.75  # surface cells from the leading edge, within which they are halved once more
+SURFACE, EDGES = "blade.obj", "edges.obj"  # in constant/triSurface
+ROUNDED = 0.75, 0.375  # surface cells from both edges, within which they are halved again
 LAYERED = (SUCTION, PRESSURE)
 BETWEEN = 3  # cells between levels
 NEAR = 2.0  # surface cells, within which all are as small: layers end where sizes change
-FULL = 0.4  # of a surface cell: how high all layers are
+FULL = 0.5  # of a surface cell: how high all layers are
 LEAST = 0.17  # of that height, where layers are squeezed; less is none
 MOST = 20  # layers
+LEANING = 75, 80  # degrees that faces may lean, and where layers would else go: 65 costs a third
 SKEW = 3.8  # of faces; checkMesh complains from 4 on
 
 
@@ -64,7 +65,7 @@ def snappy(
     Parameters
     ----------
     level : int
-        Halvings of background cells on the blade, one less than at its leading edge.
+        Halvings of background cells on the blade; at its edges there are more.
     size : float
         Of cells there [m].
     layers : Layers
@@ -84,7 +85,7 @@ def snappy(
                 "name": BLADE,
                 "regions": {name: {"name": name} for name in names},
             },
-            EDGE: {"type": "triSurfaceMesh", "name": "leading_edge"},
+            EDGES: {"type": "triSurfaceMesh", "name": "edges"},
         },
         "castellatedMeshControls": {
             "maxLocalCells": 100_000_000,
@@ -102,7 +103,12 @@ def snappy(
             "resolveFeatureAngle": 45,
             "refinementRegions": {
                 BLADE: {"mode": "distance", "levels": ((NEAR * size, level),)},
-                "leading_edge": {"mode": "distance", "levels": ((ROUNDED * size, level + 1),)},
+                "edges": {
+                    "mode": "distance",
+                    "levels": tuple(  # nearest first, as OpenFOAM asks for
+                        (share * size, level + 1 + i) for i, share in enumerate(ROUNDED)
+                    )[::-1],
+                },
             },
             "locationInMesh": tuple(inside.tolist()),
             "allowFreeStandingZoneFaces": "false",
@@ -139,12 +145,12 @@ def snappy(
             "nRelaxedIter": 10,
         },
         "meshQualityControls": {
-            "maxNonOrtho": 65,
+            "maxNonOrtho": LEANING[0],
             "maxBoundarySkewness": SKEW,
             "maxInternalSkewness": SKEW,
             "maxConcave": 80,
             "minVol": 1e-13,
-            "minTetQuality": 1e-15,
+            "minTetQuality": -1e30,  # not asked for: thin layers on curved faces have none
             "minArea": -1,
             "minTwist": 0.02,
             "minDeterminant": 0.005,
@@ -153,7 +159,7 @@ def snappy(
             "minTriangleTwist": -1,
             "nSmoothScale": 4,
             "errorReduction": 0.75,
-            "relaxed": {"maxNonOrtho": 75},
+            "relaxed": {"maxNonOrtho": LEANING[1]},
         },
         "mergeTolerance": 1e-6,
     }

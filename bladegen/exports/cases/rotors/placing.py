@@ -14,9 +14,10 @@ from bladegen.exports.cases.rotors.sector import Sector
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh, from_blade
 
-__all__ = ["nose", "radii", "require_clear", "standing"]
+__all__ = ["edges", "radii", "require_clear", "standing"]
 
-NOSE = 0.08  # of the way around a section, on both sides of its leading edge
+NOSE = 0.03  # of the way around a section, on both sides of its leading edge
+TAIL = 0.01  # of it, ahead of its trailing edge on both sides
 ROUND = 0.6  # relative thickness, from which sections are mostly cylinders
 STATIONS = 150  # of the blade's triangles
 CLEAR = 0.95  # of the sector's half angle, within which the blade must be
@@ -39,14 +40,16 @@ def standing(blade: Blade, rotor: Rotor, pitch: float) -> TriangleMesh:
     return replace(made, vertices=made.vertices @ (rotations[0] @ pitched).T + shifts[0])
 
 
-def nose(blade: Blade, surface: TriangleMesh) -> TriangleMesh:
-    """Return the part of a blade's surface that lies around the leading edge of its airfoils."""
+def edges(blade: Blade, surface: TriangleMesh) -> TriangleMesh:
+    """Return the part of a blade's surface around both edges of its airfoils."""
     assert surface.places is not None  # a blade's mesh has them
     assert surface.regions is not None
     eta, u = surface.places.T
     spans, which = np.unique(eta, return_inverse=True)
     thin = (blade.relative_thickness(spans) < ROUND)[which]
-    kept = np.all((thin & (np.abs(u - 0.5) < NOSE))[surface.faces], axis=1)
+    away = np.abs(u - 0.5)  # from the leading edge
+    near = (away < NOSE) | (away > 0.5 - TAIL)
+    kept = np.all((thin & near)[surface.faces], axis=1)
     used, faces = np.unique(surface.faces[kept], return_inverse=True)
     return TriangleMesh(surface.vertices[used], faces.reshape(-1, 3), regions=surface.regions[kept])
 

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from test_sectors import LENGTH, RADIUS, WALL, constant, tube
 
 import bladegen as bg
+from bladegen.blade.edges import Sharp
 from bladegen.definition.structure.positions import Arc
 from bladegen.surface import fitting
 from bladegen.surface.inner import inner as made_by
@@ -46,6 +47,19 @@ def test_the_base_of_a_trailing_edge_takes_room():
     room = rooms(points, inward)[0]
     assert room[100] == pytest.approx(0.5, rel=1e-6)
     assert room[5] < 0.1  # the base is seven points
+
+
+def test_a_sharp_corner_leaves_no_room_and_a_wedge_in_proportion():
+    x = np.linspace(0.0, 2.0, 401)[:, None]
+    up, down = (np.concatenate([x, way * 0.25 * x, 0.0 * x], axis=1) for way in (1.0, -1.0))
+    points = np.concatenate([up, down[::-1]])[None]  # from the corner, and back to it
+    normal = np.array([0.25, -1.0, 0.0]) / np.hypot(1.0, 0.25)
+    inward = np.repeat([normal, normal * (1.0, -1.0, 1.0)], 401, axis=0)[None]
+    room = rooms(points, inward)[0]
+    assert room[0] == room[-1] == 0.0
+    half = np.arctan(0.25)
+    along = x[100:250, 0] / np.cos(half)
+    assert_allclose(room[100:250], along * np.tan(half), rtol=1e-3)
 
 
 def test_a_room_is_lowered_until_it_changes_slowly():
@@ -135,6 +149,16 @@ def test_walls_that_fill_their_tube_leave_the_share_that_is_stated():
     assert "limited behind" in said
     assert "limited around the nose" in said
     assert "walls of 2 x 1500 mm in 199" in said
+
+
+def test_a_sharp_blade_has_one_too():
+    plain = bg.read("iea15mw")
+    blade = bg.Blade.from_definition(plain, landmarks=101, trailing_edge=Sharp())
+    made = inner_surface(net_of(blade, 2e-3), blade.layup)
+    assert made.net.v[0] == 0.0
+    assert made.net.v[-1] > 0.95
+    assert made.net.gaps.max() < 1e-5
+    assert_allclose(made.volume, layers_of(blade), rtol=0.04)
 
 
 @pytest.fixture(

@@ -65,6 +65,12 @@ def test_a_part_of_the_span_is_the_same_surface(ends):
     assert_allclose(part.volume(), np.pi * 0.5 * 0.25 * (high - low), rtol=1e-5)
 
 
+def test_a_cut_beside_a_knot_is_at_the_knot():
+    """OCCT takes no knots that are nearer to each other than rounding."""
+    part = net_through(cone(0.5), U, V).between(np.nextafter(V[2], 0.0), V[5] + 1e-12)
+    assert_allclose(part.v, V[2:6], atol=0.0)
+
+
 @pytest.mark.parametrize("top", [1.0, 0.5])
 def test_volume_of_an_elliptic_cone(top):
     fitted = net_through(cone(top), U, V)

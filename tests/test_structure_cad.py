@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
 import bladegen as bg
+from bladegen.blade.edges import Sharp
 from bladegen.cad import exchange, shapes, solids
 from bladegen.cad.structure.assembly import inside, write_structure
+from bladegen.cad.structure.inner_part import inner_part
 from bladegen.cad.structure.zones import bays_of
 from bladegen.cli import commands
 from bladegen.definition.structure.positions import Arc
@@ -19,6 +21,8 @@ from bladegen.errors import ExportError
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
 from bladegen.measures.checks import solid_figures
+from bladegen.surface.fitting import fitted
+from bladegen.surface.inner import inner
 from bladegen.surface.tips import round_tip
 from strategies import STEADY
 
@@ -136,6 +140,25 @@ def test_the_inner_surface_is_a_sheet_inside_of_the_skin(made):
     assert 0.0 < figures["without_room_m3"] < 0.015 * figures["layers_m3"]
     assert figures["deviation_m"] <= 1e-3
     assert (figures["from_eta"], figures["to_eta"]) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize("edge", ["sharp", "cut"])
+def test_an_inner_surface_that_is_closed_or_cut_is_valid(made, edge, monkeypatch):
+    blade = made[0]
+    if edge == "sharp":
+        blade = blade.with_trailing_edge(Sharp())
+    else:  # as if it crossed itself at root and tip
+        monkeypatch.setattr(inner, "crossing_spans", lambda _, net, eta: np.abs(eta - 0.5) > 0.421)
+    net = fitted(blade, 5e-3)[0]
+    part, figures, found = inner_part(net, blade.layup, 5e-3)
+    assert shapes.is_valid(part.shape)
+    assert len(part.pieces) == (2 if edge == "sharp" else 3)
+    ends = figures["from_eta"], figures["to_eta"]
+    said = f"it goes from eta = {ends[0]:.3f} to {ends[1]:.3f}"
+    if edge == "cut":
+        assert_allclose(ends, [0.08, 0.92], atol=1e-9)
+        assert said in str(found[-1])
+    assert ends[1] > 0.9
 
 
 def test_bays_end_where_webs_do_and_lines_do_not_cross(made):

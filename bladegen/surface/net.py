@@ -32,6 +32,7 @@ STEP = 1e-5  # of the span: slopes of second order are then good to 1e-10 of a t
 CLOSE = 0.125  # of the way to the next knot, which a step never exceeds
 BEZIER = np.repeat([0.0, 1.0], DEGREE + 1)  # knots of a single cubic
 ENDS = np.array([0.0, 1.0])
+NEAR = 1e-6  # of the span; a cut that near to a knot is at the knot
 CLOSED_EDGE = 1e-7  # m; a trailing edge thinner than this everywhere is sharp
 
 
@@ -119,9 +120,11 @@ class SurfaceNet:
         )
 
     def between(self, first: float, last: float) -> "SurfaceNet":
-        """Cut the surface at two spans, exactly, by knot insertion; return what lies between."""
+        """Cut the surface at two spans, or at knots beside them, by knot insertion, exactly."""
         from scipy.interpolate import BSpline
 
+        near = self.v[np.argmin(np.abs(self.v - np.array([[first], [last]])), axis=1)]
+        first, last = np.where(np.abs(near - (first, last)) < NEAR, near, (first, last)).tolist()
         if (first, last) == (self.v_knots[0], self.v_knots[-1]):
             return self
         spline = BSpline(self.v_knots, self.poles.swapaxes(0, 1), DEGREE)

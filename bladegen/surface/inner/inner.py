@@ -28,6 +28,7 @@ FIRST = 65  # knots around the section to begin with
 MAX_POLES = 60_000  # some 6 MB of STEP
 ROUNDS = 12
 SHARE = 0.5  # of the tolerance, by which an interval may stray around the section or along the span
+TIGHT, LEAST = 0.1, 0.1  # of the room and, at least, of the tolerance: allowed where that is less
 LEVEL = 0.1  # of the most that it strays by in a round, below which nothing is done in it
 NARROWEST, CLOSEST = 5e-4, 2e-4  # of the way round, of the span: intervals that are not halved
 WATCHED = 301, 401  # spans, and places around the section, at which crossings are looked for
@@ -94,19 +95,22 @@ def _fitted(wall: Wall, tolerance: float) -> tuple[SurfaceNet, Deviation]:
         net = on_knots(known, u, v)
         found = measured(net, known)
         deviation = Deviation.of(found.parts)
-        if best is None or deviation.maximum < best[1].maximum:
-            best = net, deviation
-        if deviation.maximum <= tolerance:
+        narrow = np.clip(TIGHT * wall.room(found.v, found.u), LEAST * tolerance, tolerance)
+        offsets, across = (np.abs(one) / narrow for one in (found.offsets, found.across))
+        worst = float(offsets.max())
+        if best is None or worst < best[0]:
+            best = worst, net, deviation
+        if worst <= 1.0:
             break
-        most = SHARE * max(tolerance, LEVEL * deviation.maximum)
-        along = np.abs(found.offsets - found.across).max(axis=1)
-        finer = _halved(u, found.u, np.abs(found.across).max(axis=0), most, NARROWEST)
+        most = SHARE * max(1.0, LEVEL * worst)
+        along = (np.abs(found.offsets - found.across) / narrow).max(axis=1)
+        finer = _halved(u, found.u, across.max(axis=0), most, NARROWEST)
         closer = _halved(v, found.v, along, most, CLOSEST)
         if finer.poles * closer.poles > MAX_POLES or (finer is u and closer is v):
             break
         u, v = finer, closer
     assert best is not None
-    return best
+    return best[1:]
 
 
 def _halved(knots: Knots, at: Array, off: Array, most: float, least: float) -> Knots:

@@ -46,6 +46,7 @@ def rooms(outlines: Array, inward: Array) -> Array:
         apart = squares[some, :n, None] + squares[some, None] - 2.0 * points[some] @ to
         with np.errstate(divide="ignore", invalid="ignore"):
             radius = np.where(ahead > ROUNDING, 0.5 * apart / ahead, np.inf)
+        radius[apart < ROUNDING] = 0.0  # the other corner of a sharp trailing edge
         radius[:, np.arange(n), np.arange(n)] = np.inf
         found[some] = radius.min(axis=-1)
     return np.maximum(found, 0.0)

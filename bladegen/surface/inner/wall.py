@@ -84,7 +84,7 @@ class Wall:
     def at(self, eta: Array, u: Array) -> Mapped:
         """Return the wall at span fractions (k,) and landmark parameters (n,)."""
         points, inward, cosine = self._outlines(eta, u)
-        thickness, room = self._walls.thickness(eta, u), self._room(eta, u)
+        thickness, room = self._walls.thickness(eta, u), self.room(eta, u)
         depth = cosine * kept_within(thickness / cosine, room)
         return Mapped(eta, u, points, inward, cosine, thickness, depth, room)
 
@@ -107,7 +107,7 @@ class Wall:
         cosine = np.abs(np.sum(self.net.normals(u, eta) * inward, axis=-1))
         return points, inward, np.maximum(cosine, STEEPEST)
 
-    def _room(self, eta: Array, u: Array) -> Array:
+    def room(self, eta: Array, u: Array) -> Array:
         """Return how much room there is for the wall (k, n) [m], by the map of it."""
         at, spans, known = self._map
         row = np.clip(np.searchsorted(spans, eta, side="right") - 1, 0, len(spans) - 2)

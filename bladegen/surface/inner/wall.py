@@ -21,6 +21,7 @@ from bladegen.surface.net import SurfaceNet
 __all__ = ["Mapped", "Wall"]
 
 PLACES, SPANS = 301, 301  # of the map of the room
+FINER = 4  # places between landmarks at which radii of curvature are looked at
 STEEPEST = 0.2  # cosine of the slope to the section's plane, beyond which walls grow no more
 
 
@@ -122,5 +123,18 @@ class Wall:
         points, inward, _ = self._outlines(spans, at)
         steps = np.linalg.norm(np.diff(points, axis=1), axis=-1)
         along = np.pad(np.cumsum(steps, axis=1), ((0, 0), (1, 0)))
-        room = lowered(rooms(points, inward), along, spans * self.layup.blade.length)
+        room = np.minimum(rooms(points, inward), self._bends(spans, at))
+        room = lowered(room, along, spans * self.layup.blade.length)
         return at, spans, room
+
+    def _bends(self, eta: Array, u: Array) -> Array:
+        """Return the least radii of curvature (k, n) [m] from one landmark to its neighbours."""
+        fine = np.interp(np.arange(FINER * (len(u) - 1) + 1) / FINER, np.arange(len(u)), u)
+        slope, bend = (self.net.evaluate(fine, eta, nu=times) for times in (1, 2))
+        turn = np.sum(np.cross(slope, bend) * self.planes(eta)[:, None], axis=-1)
+        with np.errstate(divide="ignore"):
+            radius = np.where(turn > 0.0, np.linalg.norm(slope, axis=-1) ** 3 / turn, np.inf)
+        cells = radius[:, :-1].reshape(len(eta), -1, FINER).min(axis=-1)
+        wide = np.pad(cells, ((0, 0), (1, 1)), mode="edge")
+        least: Array = np.minimum(np.minimum(wide[:, :-1], wide[:, 1:]), radius[:, ::FINER])
+        return least

@@ -130,6 +130,22 @@ def test_arcs_are_circles_around_the_axis_for_any_number_of_blades(blades):
         assert_allclose(ends[:, 0], middle[0], rtol=1e-6)
 
 
+def test_blocks_around_the_blade_lean_with_it():
+    made = case()
+    x, reach = made.surface.vertices[:, 0], np.hypot(*made.surface.vertices[:, 1:].T)
+    sector = made.sector
+    ahead, behind = (np.array([sector.along_x(plane, one) for one in reach]) for plane in (1, 2))
+    assert (x - ahead).min() > sector.cell
+    assert (behind - x).min() > sector.cell
+    outer = reach > 0.3 * sector.tip
+    middle = np.polyfit(reach[outer], x[outer], 1)[0]
+    assert_allclose(sector.lean, middle, atol=0.01)
+    assert sector.lean < -0.05  # upwind, by precone and prebend
+    assert np.ptp(behind - ahead) < 1e-9
+    for plane in (0, 3):
+        assert sector.along_x(plane, 0.0) == sector.along_x(plane, sector.tip)
+
+
 def test_the_blade_stands_in_the_sector_with_its_root_in_the_hub(written, blocks):
     made, lines = case(), (written / "constant/triSurface/blade.obj").read_text().splitlines()
     points = np.array([line.split()[1:] for line in lines if line.startswith("v ")], dtype=float)
@@ -146,7 +162,8 @@ def test_the_blade_stands_in_the_sector_with_its_root_in_the_hub(written, blocks
     assert radius.max() < 0.5 * made.sector.far
     snappy = parsed((written / "system/snappyHexMeshDict").read_text())
     inside = np.array(snappy["castellatedMeshControls"]["locationInMesh"])
-    assert inside[0] < points[:, 0].min()
+    beside = np.abs(points[:, 2] - inside[2]) < 5.0
+    assert made.sector.along_x(1, inside[2]) < inside[0] < points[beside, 0].min()
     assert set(snappy["geometry"]["blade.obj"]["regions"]) == set(groups)
     assert set(snappy["addLayersControls"]["layers"]) <= set(groups)
 
@@ -316,6 +333,18 @@ def test_layers_fill_part_of_a_cell(cell, first, growth):
     if 1 < made.count < 20:
         assert made.height < 0.75 * cell
         assert heights.sum() > 0.5 * cell
+
+
+@pytest.mark.parametrize("name", ["iea15mw", "nrel5mw"])
+@pytest.mark.parametrize("asked", [{}, {"cells": 24}, {"cells": 96, "y_plus": 100.0}])
+def test_the_flattest_cells_of_layers_are_no_faults(tmp_path, name, asked):
+    """A box's determinant, of its faces' areas over their mean: 1 of a cube."""
+    made = rotor_case(blade(name), **asked)
+    made.write(tmp_path / "case")
+    said = parsed((tmp_path / "case/system/snappyHexMeshDict").read_text())["meshQualityControls"]
+    height, wide = made.layers.first, made.size
+    areas = np.array([wide * 3.0 * wide, height * wide, height * 3.0 * wide])
+    assert said["minDeterminant"] < 0.1 * np.prod(areas) / areas.mean() ** 3
 
 
 def run(*words):

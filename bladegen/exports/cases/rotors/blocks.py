@@ -65,12 +65,14 @@ def block_mesh(sector: Sector) -> dict[str, Any]:
     return {
         "scale": 1,
         "vertices": [
-            (x, *point.tolist()) for x in sector.planes for point in sector.points.values()
+            (sector.along_x(plane, hypot(*point)), *point.tolist())
+            for plane in range(last + 1)
+            for point in sector.points.values()
         ],
         "edges": [
             f"arc {' '.join(map(str, corners(edge, plane)))} "
-            f"{vector((x, *_between(sector, edge, radius)))}"
-            for plane, x in enumerate(sector.planes)
+            f"{vector((sector.along_x(plane, radius), *_between(sector, edge, radius)))}"
+            for plane in range(last + 1)
             for radius, edges in circles.items()
             for edge in edges
         ],

@@ -25,6 +25,7 @@ FULL = 0.5  # of a surface cell: how high all layers are
 LEAST = 0.17  # of that height, where layers are squeezed; less is none
 MOST = 20  # layers
 LEANING = 75, 80  # degrees that faces may lean, and where layers would else go: 65 costs a third
+FLAT = 1e-6  # least determinant: 1 of a cube; 0.005 would drop layers as flat as 1 to 100
 SKEW = 3.8  # of faces; checkMesh complains from 4 on
 
 
@@ -153,7 +154,7 @@ def snappy(
             "minTetQuality": -1e30,  # not asked for: thin layers on curved faces have none
             "minArea": -1,
             "minTwist": 0.02,
-            "minDeterminant": 0.005,
+            "minDeterminant": FLAT,
             "minFaceWeight": 0.05,
             "minVolRatio": 0.01,
             "minTriangleTwist": -1,

@@ -37,6 +37,7 @@ from bladegen.surface.wall_spacing import first_height
 
 __all__ = ["RotorCase", "rotor_case"]
 
+INNER = 0.2  # span fraction, within which a blade's lean is left aside
 BLADES = 3, 6  # of rotors whose sectors have blocks of sound angles
 CELLS = 16, 1024
 FINE = 200  # cells, below which it is said that they are few
@@ -120,7 +121,8 @@ class RotorCase:
     def inside(self) -> Array:
         """A point in the flow, on no face of the background [m]."""
         cell, sector = self.sector.cell, self.sector
-        return np.array([sector.blade[0] - AHEAD * cell, OFF * cell, UP * sector.tip])
+        up = UP * sector.tip
+        return np.array([sector.blade[0] + sector.lean * up - AHEAD * cell, OFF * cell, up])
 
     @cached_property
     def figures(self) -> dict[str, Any]:
@@ -252,13 +254,16 @@ def rotor_case(
     surface = standing(blade, rotor, flow.pitch)
     size = 2.0 * flow.chord / cells
     level, cell = _background(rotor, size)
-    x, y, z = surface.vertices.T
+    from_axis = np.hypot(surface.vertices[:, 1], surface.vertices[:, 2])
+    lean = _lean(surface, from_axis)
+    straight = surface.vertices[:, 0] - lean * from_axis
     sector = Sector(
         blades=rotor.blades,
         hub=rotor.spinner_radius,
-        tip=float(np.hypot(y, z).max()),
+        tip=float(from_axis.max()),
         far=radius * tip,
-        blade=(float(x.min()), float(x.max())),
+        blade=(float(straight.min()), float(straight.max())),
+        lean=lean,
         ends=(-UPSTREAM * radius * tip, DOWNSTREAM * radius * tip),
         cell=cell,
         slender=SLENDER,
@@ -267,6 +272,13 @@ def rotor_case(
     height = 2.0 * float(first_height(flow.reynolds, flow.chord, y_plus))
     layers = Layers.under(size, height, growth)
     return RotorCase(blade, rotor, flow, surface, sector, level, layers, cells, y_plus, end)
+
+
+def _lean(surface: TriangleMesh, from_axis: Array) -> float:
+    """Return how far downwind a blade goes over its radii (v,): the line by its outer part."""
+    assert surface.places is not None  # a blade's mesh has them
+    outer = surface.places[:, 0] > INNER
+    return float(np.polyfit(from_axis[outer], surface.vertices[outer, 0], 1)[0])
 
 
 def _background(rotor: Rotor, size: float) -> tuple[int, float]:

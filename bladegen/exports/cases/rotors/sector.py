@@ -37,7 +37,10 @@ class Sector:
     hub, tip, far : float
         Radii of the inner cylinder, of the blade's tip and of the outer cylinder [m].
     blade : (float, float)
-        Where the blade lies along x [m].
+        Where the blade lies along x, less its lean [m].
+    lean : float
+        How far downwind the blade goes from the axis to the tip, over the tip's radius: blocks
+        around it go with it, so that its surface crosses few rows of cells.
     ends : (float, float)
         Inlet and outlet, x [m].
     cell : float
@@ -51,6 +54,7 @@ class Sector:
     tip: float
     far: float
     blade: tuple[float, float]
+    lean: float
     ends: tuple[float, float]
     cell: float
     slender: float
@@ -149,6 +153,11 @@ class Sector:
         low, high = self.blade
         room = MARGIN * self.cell
         return [self.ends[0], low - room, high + room, self.ends[1]]
+
+    def along_x(self, plane: int, radius: float) -> float:
+        """Return where a plane of `planes` is at a radius [m]."""
+        leans = 0 < plane < len(self.planes) - 1
+        return self.planes[plane] + (self.lean * min(radius, self.tip) if leans else 0.0)
 
     @cached_property
     def layers(self) -> list[tuple[int, float]]:

@@ -13,6 +13,7 @@ import os
 import re
 import subprocess
 import tempfile
+from dataclasses import replace
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -118,30 +119,11 @@ def fields(made: SectionCase) -> dict[str, tuple[str, dict[str, Any]]]:
 
 def system(made: SectionCase, end: int) -> dict[str, dict[str, Any]]:
     """Return the dictionaries of the run, by the rotor's schemes and solvers."""
-    limited = dict.fromkeys(("grad(U)", "grad(k)", "grad(omega)"), "cellLimited Gauss linear 1")
-    schemes = dictionaries.schemes(
-        {"default": "Gauss linear", **limited}, "upwind", "limited corrected 0.5"
-    )
     chord = made.flow.chord
-    forces = {
-        "type": "forceCoeffs",
-        "libs": ('"libforces.so"',),
-        "patches": ("blade",),
-        "rho": "rhoInf",
-        "rhoInf": 1,
-        "magUInf": made.flow.speed,
-        "lRef": chord,
-        "Aref": chord**2,
-        "CofR": (0, 0, 0),
-        "liftDir": (0, 1, 0),
-        "dragDir": (1, 0, 0),
-        "pitchAxis": (0, 0, -1),
-        "log": "false",
-    }
+    level = replace(made.flow, alpha=0.0)  # it is the section that is turned
     return {
-        "controlDict": dictionaries.stepping(end) | {"functions": {"forces": forces}},
-        "fvSchemes": schemes,
-        "fvSolution": dictionaries.solution(0.1, consistent=True, relaxed=rotors.RELAXED),
+        "controlDict": dictionaries.system(level, chord, end)["controlDict"],
+        **rotors.numerics(),
         "extrudeMeshDict": {
             "constructFrom": "patch",
             "sourceCase": '"."',

@@ -102,9 +102,7 @@ def system(flow: Conditions, thickness: float, end: int) -> dict[str, dict[str, 
     return {
         "controlDict": _control(flow, thickness, end),
         "fvSchemes": schemes({"default": "Gauss linear"}, "limitedLinear 1", "corrected"),
-        "fvSolution": solution(
-            0.05, consistent=True, relaxed={"equations": {"U": 0.95, '"(k|omega)"': 0.9}}
-        ),
+        "fvSolution": solution(0.05, velocity=0.95, eddies=0.9),
         "decomposeParDict": {
             "numberOfSubdomains": 2,
             "method": "simple",
@@ -187,17 +185,15 @@ def schemes(gradients: dict[str, str], eddies: str, normal: str) -> dict[str, An
     }
 
 
-def solution(transport: float, *, consistent: bool, relaxed: dict[str, Any]) -> dict[str, Any]:
-    """Return the solvers of a steady run.
+def solution(transport: float, *, velocity: float, eddies: float) -> dict[str, Any]:
+    """Return the solvers of a steady run, by SIMPLE-C.
 
     Parameters
     ----------
     transport : float
         By how much residuals of velocity and eddies fall in an iteration.
-    consistent : bool
-        Whether it is SIMPLE-C.
-    relaxed : dict
-        Relaxation of fields and equations.
+    velocity, eddies : float
+        Relaxation of their equations, 1 for none.
     """
     pressure = {"solver": "GAMG", "smoother": "GaussSeidel", "tolerance": 1e-10, "relTol": 0.05}
     return {
@@ -211,9 +207,9 @@ def solution(transport: float, *, consistent: bool, relaxed: dict[str, Any]) -> 
             },
         },
         "SIMPLE": {
-            "consistent": "yes" if consistent else "no",
+            "consistent": "yes",
             "nNonOrthogonalCorrectors": 0,
             "residualControl": SETTLED,
         },
-        "relaxationFactors": relaxed,
+        "relaxationFactors": {"equations": {"U": velocity, '"(k|omega)"': eddies}},
     }

@@ -3,6 +3,7 @@
 import numpy as np
 
 from bladegen.airfoils.landmarks import landmark_parameters
+from bladegen.curves.vectors import cross, lengths
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array, Mask
 from bladegen.surface.inner.room import MOST
@@ -21,7 +22,7 @@ def limited(wall: Wall) -> tuple[float, tuple[Finding, ...]]:
     at = wall.at(np.linspace(0.0, 1.0, SPANS), landmark_parameters(PLACES))
     lost = at.thickness - at.depth
     slopes = wall.net.evaluate(at.u, at.eta, nu=1), wall.net.evaluate(at.u, at.eta, nv=1)
-    area = np.linalg.norm(np.cross(*slopes), axis=-1)
+    area = lengths(cross(*slopes))
     left_out = float(np.trapezoid(np.trapezoid(lost * area, at.u, axis=1), at.eta))
     few, along = at.depth < KEPT * at.thickness, _along_chord(at)
     parts = (("behind", few & (along >= HALF)), ("around the nose", few & (along < HALF)))

@@ -14,6 +14,7 @@ import numpy as np
 from bladegen.airfoils.landmarks import landmark_parameters
 from bladegen.blade.layup.layup import Layup
 from bladegen.blade.layup.walls import Walls
+from bladegen.curves.vectors import cross, dots, lengths
 from bladegen.support.arrays import Array
 from bladegen.surface.inner.room import kept_within, lowered, rooms
 from bladegen.surface.net import SurfaceNet
@@ -84,7 +85,7 @@ class Wall:
 
     def at(self, eta: Array, u: Array) -> Mapped:
         """Return the wall at span fractions (k,) and landmark parameters (n,)."""
-        points, inward, cosine = self._outlines(eta, u)
+        points, inward, cosine = self._outlines(eta, u, self.planes(eta))
         thickness, room = self._walls.thickness(eta, u), self.room(eta, u)
         depth = cosine * kept_within(thickness / cosine, room)
         return Mapped(eta, u, points, inward, cosine, thickness, depth, room)
@@ -93,19 +94,19 @@ class Wall:
         """Return the unit normals (k, 3) of sections, about which outlines turn to the left."""
         around = self.net.evaluate(landmark_parameters(PLACES), eta)
         around = around - around[:, :1]
-        normal = np.cross(around[:, :-1], around[:, 1:]).sum(axis=1)
-        unit: Array = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+        normal = cross(around[:, :-1], around[:, 1:]).sum(axis=1)
+        unit: Array = normal / lengths(normal)[:, None]
         return unit
 
     @cached_property
     def _walls(self) -> Walls:
         return Walls(self.layup)
 
-    def _outlines(self, eta: Array, u: Array) -> tuple[Array, Array, Array]:
-        points, plane = self.net.evaluate(u, eta), self.planes(eta)[:, None]
-        inward = np.cross(plane, self.net.evaluate(u, eta, nu=1))
-        inward /= np.linalg.norm(inward, axis=-1, keepdims=True)
-        cosine = np.abs(np.sum(self.net.normals(u, eta) * inward, axis=-1))
+    def _outlines(self, eta: Array, u: Array, planes: Array) -> tuple[Array, Array, Array]:
+        points = self.net.evaluate(u, eta)
+        inward = cross(planes[:, None], self.net.evaluate(u, eta, nu=1))
+        inward /= lengths(inward)[..., None]
+        cosine = np.abs(dots(self.net.normals(u, eta), inward))
         return points, inward, np.maximum(cosine, STEEPEST)
 
     def room(self, eta: Array, u: Array) -> Array:
@@ -120,20 +121,21 @@ class Wall:
     def _map(self) -> tuple[Array, Array, Array]:
         """Return places (n,), spans (k,) and how much room there is at them (k, n) [m]."""
         at, spans = landmark_parameters(PLACES), np.linspace(0.0, 1.0, SPANS)
-        points, inward, _ = self._outlines(spans, at)
-        steps = np.linalg.norm(np.diff(points, axis=1), axis=-1)
+        planes = self.planes(spans)
+        points, inward, _ = self._outlines(spans, at, planes)
+        steps = lengths(np.diff(points, axis=1))
         along = np.pad(np.cumsum(steps, axis=1), ((0, 0), (1, 0)))
-        room = np.minimum(rooms(points, inward), self._bends(spans, at))
+        room = np.minimum(rooms(points, inward), self._bends(spans, at, planes))
         room = lowered(room, along, spans * self.layup.blade.length)
         return at, spans, room
 
-    def _bends(self, eta: Array, u: Array) -> Array:
+    def _bends(self, eta: Array, u: Array, planes: Array) -> Array:
         """Return the least radii of curvature (k, n) [m] from one landmark to its neighbours."""
         fine = np.interp(np.arange(FINER * (len(u) - 1) + 1) / FINER, np.arange(len(u)), u)
         slope, bend = (self.net.evaluate(fine, eta, nu=times) for times in (1, 2))
-        turn = np.sum(np.cross(slope, bend) * self.planes(eta)[:, None], axis=-1)
+        turn = dots(cross(slope, bend), planes[:, None])
         with np.errstate(divide="ignore"):
-            radius = np.where(turn > 0.0, np.linalg.norm(slope, axis=-1) ** 3 / turn, np.inf)
+            radius = np.where(turn > 0.0, lengths(slope) ** 3 / turn, np.inf)
         cells = radius[:, :-1].reshape(len(eta), -1, FINER).min(axis=-1)
         wide = np.pad(cells, ((0, 0), (1, 1)), mode="edge")
         least: Array = np.minimum(np.minimum(wide[:, :-1], wide[:, 1:]), radius[:, ::FINER])

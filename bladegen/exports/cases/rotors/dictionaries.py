@@ -16,13 +16,11 @@ from bladegen.exports.cases.rotors.blocks import FAR, HUB, INLET, OUTLET, SIDES,
 from bladegen.exports.cases.rotors.operation import DENSITY, Operation
 from bladegen.support.foam import number, vector
 
-__all__ = ["constant", "fields", "system"]
+__all__ = ["constant", "fields", "numerics", "system"]
 
 EDDIES = 100.0  # of the viscosity, in the wind
 BEGUN = 1000.0  # where a run begins: walls at rest in still air leave pressure nothing to hold
 OMEGA = 5.0  # wind speeds over the reference chord, see `conditions.OMEGA`
-# SIMPLE-C: air past the blade goes round faster than the wake goes downwind, by the tip speed ratio
-RELAXED = {"equations": {"U": 0.9, '"(k|omega)"': 0.8}}
 
 
 def turbulence(flow: Operation) -> tuple[float, float]:
@@ -93,18 +91,29 @@ def constant(flow: Operation, sense: float) -> dict[str, dict[str, Any]]:
 
 def system(flow: Operation, blades: int, length: float, end: int) -> dict[str, dict[str, Any]]:
     """Return how the equations are solved and what is written; the wake's length in metres."""
-    limited = dict.fromkeys(("grad(U)", "grad(k)", "grad(omega)"), "cellLimited Gauss linear 1")
-    gradients = {"default": "Gauss linear", **limited}
     return {
         "controlDict": _control(flow, blades, end),
-        "fvSchemes": dictionaries.schemes(gradients, "upwind", "limited corrected 0.5"),
-        "fvSolution": dictionaries.solution(0.1, consistent=True, relaxed=RELAXED),
+        **numerics(),
         "setFieldsDict": _wake(flow, length),
         "decomposeParDict": {
             "numberOfSubdomains": 2,
             "method": "simple",
             "coeffs": {"n": (1, 1, 2)},  # along the blade
         },
+    }
+
+
+def numerics() -> dict[str, dict[str, Any]]:
+    """Return schemes and solvers on snappyHexMesh's cells.
+
+    Velocity is relaxed by little: air past the blade goes round faster than the wake goes downwind,
+    by the tip speed ratio, and the wake would take as many more iterations.
+    """
+    limited = dict.fromkeys(("grad(U)", "grad(k)", "grad(omega)"), "cellLimited Gauss linear 1")
+    gradients = {"default": "Gauss linear", **limited}
+    return {
+        "fvSchemes": dictionaries.schemes(gradients, "upwind", "limited corrected 0.5"),
+        "fvSolution": dictionaries.solution(0.1, velocity=0.9, eddies=0.8),
     }
 
 

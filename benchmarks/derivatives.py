@@ -1,8 +1,9 @@
 """Derivatives of a blade in its parameters, beside evaluations: python benchmarks/derivatives.py
 
-100 sections of 401 points, 12 parameters: four shape coordinates at three knots over span.  All in
-turns in one process, so that shares hold on a busy machine too; the first calls, which compile or
-load kernels, are not counted.
+100 sections of 401 points, in 12 parameters: four shape coordinates at three knots over span; and
+in 11: four shape coordinates, thickness, camber, chord, twist, and factors of chord, twist and
+prebend.  All in turns in one process, so that shares hold on a busy machine too; the first calls,
+which compile or load kernels, are not counted.
 """
 
 import numpy as np
@@ -14,6 +15,10 @@ SPANS, RUNS, MANY = 100, 15, 64
 STEP = 1e-5
 
 
+KNOTS = (("pga", (0.3, 0.6, 0.9)),)
+AFFINE = ("thickness", "camber", "chord", "twist", "chord_scale", "twist_scale", "prebend_scale")
+
+
 def main() -> None:
     """Print what evaluations, products and Jacobians take."""
     quick = asked(__doc__).quick
@@ -22,41 +27,46 @@ def main() -> None:
     for name in bg.bundled()[: 1 if quick else None]:
         blade = bg.Blade.from_definition(bg.read(name))
         eta = blade.stations(SPANS)
-        model = bg.ParametricBlade(blade, space, (("pga", (0.3, 0.6, 0.9)),), eta)
-        rng = np.random.default_rng(7)
-        x = 0.3 * (model.upper - model.lower) * rng.uniform(-0.5, 0.5, len(model.names))
-        g = rng.normal(size=(SPANS, len(blade.u), 3))
-        many = x * rng.uniform(0.9, 1.1, size=(MANY, len(x)))
-        ways = np.eye(len(x)) * STEP
+        for parameters in (KNOTS, ("pga", *AFFINE)):
+            measured(name, bg.ParametricBlade(blade, space, parameters, eta), runs)
 
-        def differences(model=model, x=x, ways=ways):
-            return (model.sections(x + ways) - model.sections(x - ways)) / (2 * STEP)
 
-        def by_perturbed(blade=blade, t=x[:4], eta=eta):
-            variant = blade.perturbed(space, t, allow_odd=True, allow_extrapolation=True)
-            return variant.sections(eta)
+def measured(name: str, model: bg.ParametricBlade, runs: int) -> None:
+    """Print the figures of one model."""
+    rng = np.random.default_rng(7)
+    width = model.upper - model.lower
+    x = model.baseline + 0.3 * width * rng.uniform(-0.5, 0.5, len(width))
+    g = rng.normal(size=(SPANS, len(model.blade.u), 3))
+    many = x + 0.03 * width * rng.uniform(-0.5, 0.5, size=(MANY, len(x)))
+    ways = np.eye(len(x)) * STEP
 
-        calls = {
-            "sections": lambda model=model, x=x: model.sections(x),
-            "jvp": lambda model=model, x=x, dx=x: model.jvp(x, dx),
-            "vjp": lambda model=model, x=x, g=g: model.vjp(x, g),
-            "jacobian": lambda model=model, x=x: model.jacobian(x),
-            "differences, in one batch": differences,
-            "perturbed, then sections": by_perturbed,
-            f"one of {MANY} vectors at once": lambda model=model, many=many: model.sections(many),
-        }
-        spent = seconds(calls, runs)
-        spent[f"one of {MANY} vectors at once"] = [
-            one / MANY for one in spent[f"one of {MANY} vectors at once"]
-        ]
-        label = f"{len(x)} parameters, {SPANS} x {len(blade.u)}"
-        figure(label, name, "ms", {way: [1e3 * one for one in of] for way, of in spent.items()})
-        base = np.array(spent["sections"])
-        shares = {
-            way: list(np.array(spent[way]) / base)
-            for way in ("jvp", "vjp", "jacobian", "differences, in one batch")
-        }
-        figure(f"{label}, evaluations' time", name, "", shares)
+    def by_perturbed():
+        return model.blade.perturbed(
+            model.space, x[:4], allow_odd=True, allow_extrapolation=True
+        ).sections(model.eta)
+
+    at_once = f"one of {MANY} vectors at once"
+    calls = {
+        "sections": lambda: model.sections(x),
+        "jvp": lambda: model.jvp(x, x),
+        "vjp": lambda: model.vjp(x, g),
+        "jacobian": lambda: model.jacobian(x),
+        "differences, in one batch": lambda: (
+            (model.sections(x + ways) - model.sections(x - ways)) / (2 * STEP)
+        ),
+        "perturbed, then sections": by_perturbed,
+        at_once: lambda: model.sections(many),
+    }
+    spent = seconds(calls, runs)
+    spent[at_once] = [one / MANY for one in spent[at_once]]
+    label = f"{len(x)} parameters, {SPANS} x {len(model.blade.u)}"
+    figure(label, name, "ms", {way: [1e3 * one for one in of] for way, of in spent.items()})
+    base = np.array(spent["sections"])
+    shares = {
+        way: list(np.array(spent[way]) / base)
+        for way in ("jvp", "vjp", "jacobian", "differences, in one batch")
+    }
+    figure(f"{label}, evaluations' time", name, "", shares)
 
 
 if __name__ == "__main__":

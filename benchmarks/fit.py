@@ -29,7 +29,7 @@ from figures import figure, parser
 
 import bladegen as bg
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.blade.planform import ROOT
+from bladegen.blade.section_planes import ROOT
 from bladegen.exports import exporters
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products

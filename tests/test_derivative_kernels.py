@@ -76,7 +76,7 @@ def test_where_the_baseline_has_two_noses_its_chord_lines_move_with_the_thicknes
     blade = bg.Blade.from_definition(definition)
     space = bg.ShapeSpace.bundled()
     model = bg.ParametricBlade(blade, space, ("pga", "thickness"), [0.05, 0.1], window=bg.Window())
-    assert not model._batch.alone.any()
+    assert not model._batch.standing.alone.any()
     x, step = np.array([0.01, 0.02, -0.01, 0.005, 1.05]), np.array([0, 0, 0, 0, 1e-4])
     found = (model.sections(x + step) - model.sections(x - step)) / 2e-4
     exact = model.jacobian(x)

@@ -59,6 +59,36 @@ def test_frames_of_a_bent_axis_turn_about_y_only():
     assert_allclose(frames[:, 1], np.broadcast_to([0.0, 1.0, 0.0], (33, 3)), atol=1e-12)
 
 
+@pytest.mark.parametrize("root", [0.0, 0.02])
+@pytest.mark.parametrize("way", ["prebend", "sweep"])
+def test_frames_of_an_axis_in_a_plane_are_those_carried_along_it(root, way):
+    """All but no sweep, or prebend, carries them step by step."""
+    bent, hair = line(0.0, -1.0, 2.0, -4.0), line(0.0, 1e-9, 0.0, 0.0)
+    z, still = line(0.0, 30.0, 60.0, 100.0), line(0.0, 0.0)
+    both = [ReferenceAxis(bent, y, z) for y in (still, hair)]
+    if way == "sweep":
+        both = [ReferenceAxis(axis.y, axis.x, axis.z) for axis in both]
+    at_once, carried = (flange_to_axis(axis, root)(ETA) for axis in both)
+    assert_allclose(at_once, carried, atol=1e-9)
+    assert np.max(np.abs(at_once - np.eye(3))) > 0.05
+
+
+@given(definitions(), st.lists(st.floats(-3.0, 3.0), min_size=1, max_size=4))
+def test_frames_under_factors_of_the_prebend_are_those_of_each_axis(definition, factors):
+    axis, scale = definition.axis, np.array(factors)
+    for planes in (flange_to_axis, normal_to_axis, normal_to_z):
+        frames = Planform(definition, planes).frames
+        bent = frames.bent(scale, ETA)
+        swept = np.ptp(axis.y.values) > 0.0 < np.ptp(axis.x.values)
+        assert (bent is None) == (swept and planes is not normal_to_z)
+        if bent is None:
+            continue
+        bends = [replace(axis.x, values=factor * axis.x.values) for factor in scale]
+        axes = [ReferenceAxis(x, axis.y, axis.z) for x in bends]
+        own = np.stack([replace(frames, axis=one)(ETA) for one in axes])
+        assert_allclose(np.broadcast_to(bent, own.shape), own, atol=1e-12)
+
+
 @pytest.mark.parametrize("values", [(0.0, 1.0, 100.0), (0.0, 99.0, 100.0)])
 def test_an_axis_whose_spline_starts_or_ends_at_rest_has_frames(values):
     axis = ReferenceAxis(line(0.0, 0.0), line(0.0, 0.0), line(*values))

@@ -12,7 +12,7 @@ import numpy as np
 
 from bladegen.airfoils.landmarks import landmark_parameters
 from bladegen.airfoils.section_splines import SectionSplines
-from bladegen.blade.planform import ROOT, flange_to_axis
+from bladegen.blade.section_planes import ROOT, flange_to_axis
 from bladegen.definition.blade_definition import Distribution, ReferenceAxis
 from bladegen.errors import GeometryError
 from bladegen.fitting.sections.chains import Cut

@@ -51,7 +51,7 @@ class Linearisation:
         raw, target = outline.coefficients(t), np.ascontiguousarray(self.chain.target.T)
         standing = batch.standing(target)
         moving = np.zeros_like(standing)
-        rows = np.flatnonzero(~batch.alone)
+        rows = np.flatnonzero(~batch.standing.alone)
         if batch.chord_line == KEPT and rows.size:
             moving[rows] = self._line_slopes(rows, target[rows])
         result = np.empty(raw.shape)
@@ -68,7 +68,7 @@ class Linearisation:
         from bladegen.parametric import coefficient_kernels as kernels
 
         batch = self.outline.batch
-        plain = batch.coefficients(np.zeros((1, self.parameters.modes)))[rows]
+        plain = batch.parts.plain[rows]
         raw, result = np.repeat(plain, target.shape[1], axis=1), np.zeros((*target.shape, 4))
         given = [batch.blade.u, batch.features[rows], batch.parts.slopes[rows], raw, target]
         kernels.lines_slopes(*_laid_out(*given), result)

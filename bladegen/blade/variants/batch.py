@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
+from bladegen.airfoils.chord_lines import KEPT
 from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import AffineChange, Window, faded
@@ -19,12 +19,13 @@ from bladegen.blade.sanity import CHARACTERISTICS, Oddities, characteristics, od
 from bladegen.blade.variants.features import Features
 from bladegen.blade.variants.members import CROSSING, FAULTS, SOUND, THIN, TURNED, Batch
 from bladegen.blade.variants.placing import Placing, column
+from bladegen.blade.variants.standing import Standing
 from bladegen.curves import polygons
 from bladegen.curves.crossing import crossing_sections
 from bladegen.shapes import affine
 from bladegen.shapes.domain import Domain
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.support.arrays import Array, Indices, Mask, readonly
+from bladegen.support.arrays import Array, Indices, readonly
 
 __all__ = ["FAULTS", "LOST_THICKNESS", "Batch", "SectionBatch"]
 
@@ -125,34 +126,9 @@ class SectionBatch:
         return characteristics(self._curves_before, self._plain_ruling / self.before)
 
     @cached_property
-    def _lines(self) -> tuple[ChordLines, Motions]:
-        """The baseline's chord lines at its own relative thickness, and how they got there."""
-        return self.blade.shape.chord_lines(self.eta, self.ruling)
-
-    @property
-    def alone(self) -> Mask:
-        """Where the baseline's chord line is the same at any relative thickness, (k,)."""
-        return self._lines[0].alone
-
-    def standing(self, target: Array) -> Array:
-        """Return where sections of relative thickness (k, b) shall stand, (k, b, 4).
-
-        Nose and trailing-edge midpoint of the chord lines that they keep, or the motions that
-        the baseline's own sections took: cosine and sine, and the shift.
-        """
-        kept = self.chord_line == KEPT
-
-        def numbers(lines: ChordLines, motions: Motions) -> Array:
-            parts = [lines.nose, lines.edge] if kept else [motions.R[:, 0], motions.s]
-            return np.concatenate(parts, axis=-1)
-
-        result = np.repeat(numbers(*self._lines)[:, None], target.shape[1], axis=1)
-        # where two noses compete, the line depends on the thickness
-        two = ~self.alone & np.any(target != self.ruling[:, None], axis=1)
-        for k in np.flatnonzero(two):
-            eta = np.full(target.shape[1], self.eta[k])
-            result[k] = numbers(*self.blade.shape.chord_lines(eta, target[k]))
-        return result
+    def standing(self) -> Standing:
+        """Where a change of shape leaves the sections' chord lines."""
+        return Standing(self.parts, self.ruling, self.chord_line)
 
     def evaluate(
         self,

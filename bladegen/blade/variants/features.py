@@ -97,6 +97,11 @@ class Features:
         result[:, :, -1] = b[:, None]
         return result
 
+    @cached_property
+    def plain(self) -> Array:
+        """The coefficients (k, 1, F, 2) of the baseline's own shapes."""
+        return self.coefficients(np.zeros((1, self._carried.shape[1])), np.ones(len(self.eta)))
+
     def turned(self, sections: Array, to_space: Array) -> Array:
         """Return how far chord lines of sections (b, k, n, 3) turn from the baseline's, (b, k)."""
         plain, _, M, b = self.shapes

@@ -6,8 +6,8 @@ opposite.  Points are (2, n) here: x, then y.  All that is done to a section is 
 lies in the processor's nearest cache, and sections do not know of each other: what comes out
 does not depend on how many are made at once, where, or in what order.
 
-`made` is called from outside.  It is numpy's laws once more, with their notation and tolerances:
-`crossing_sections`, `SectionSplines.normalising` and `ChordLines.onto` (`sizes`),
+`made` and `lines` are called from outside.  They are numpy's laws once more, with their notation
+and tolerances: `crossing_sections`, `SectionSplines.normalising` and `ChordLines.onto` (`sizes`),
 `MinimumThickness`, `polygons.measure`, and a map to space.
 """
 
@@ -24,9 +24,9 @@ from bladegen.curves.separation import ANGLES, APART, FLAT
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.compiled import ONE, ZERO, compiled
 
-__all__ = ["CROSSING", "OPEN", "SOUND", "made"]
+__all__ = ["CROSSING", "OPEN", "SOUND", "lines", "made"]
 
-REVISION = 20  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 21  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -101,12 +101,7 @@ def made(
             )
             if not len(sections) and not len(looks):
                 continue
-            carry(points, total)
-            if turned:
-                carried(c, total, now)
-                line = chord_line(Section(u, slopes[k], now, points), work)
-            else:  # a stretch normal to it keeps the line (`ChordLines.sized`)
-                line = both(line, total)
+            line = sized_line(section, total, line, turned, now, work)
             if len(looks):
                 characterise(points, line, flat[k, b], moved, work, looks[b, k])
             if len(sections):
@@ -116,6 +111,38 @@ def made(
                 place(points, to_space[b, k], sections[b, k])
             if len(measures):
                 measure(points, chord[b, k], measures[b, k])
+
+
+@compiled
+def sized_line(
+    s: Section, total: Numbers, line: Numbers, turned: bool, now: Array, work: Array
+) -> Numbers:
+    """Bring a section's points to size, and return the chord line that it has then."""
+    carry(s.points, total)
+    if turned:
+        carried(s.c, total, now)
+        after: Numbers = chord_line(Section(s.u, s.slopes, now, s.points), work)
+        return after
+    kept: Numbers = both(line, total)  # a stretch normal to it keeps it (`ChordLines.sized`)
+    return kept
+
+
+@compiled
+def lines(
+    u: Array, values: Array, slopes: Array, coefficients: Array, target: Array, result: Array
+) -> None:
+    """Fill the chord lines (k, b, 4) of sections at relative thickness (k, b); see `made`."""
+    spans, count, features, _ = coefficients.shape
+    points, moved = np.empty((2, len(u))), np.empty((2, len(u)))
+    now, work = np.empty((features, 2)), np.empty(len(u))
+    for k in range(spans):
+        for b in range(count):
+            combine(values[k], coefficients[k, b], points)
+            section = Section(u, slopes[k], coefficients[k, b], points)
+            total, _, line, _, turned = sizing(section, values[k], target[k, b], now, moved, work)
+            after = sized_line(section, total, line, turned, now, work)
+            for j in range(4):
+                result[k, b, j] = after[j]
 
 
 @compiled

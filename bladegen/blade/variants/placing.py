@@ -8,6 +8,7 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import AffineChange, Window, faded
 from bladegen.blade.planform import placement
+from bladegen.blade.section_planes import stretched
 from bladegen.support.arrays import Array, ArrayLike
 
 __all__ = ["Placing", "column"]
@@ -69,24 +70,31 @@ class Placing:
         )
 
     def _axis(self, prebend_scale: Array) -> tuple[Array, Array]:
-        """Return reference axes (b or 1, k, 3) and section frames (b or 1, k, 3, 3)."""
+        """Return reference axes (b or 1, k, 3) and section frames (b or 1, k, 3, 3).
+
+        No window touches them.
+        """
         values, inverse = np.unique(prebend_scale, return_inverse=True)
-        standing = [self.own_axis if value == 1.0 else self._bent(value) for value in values]
-        axes, frames = (np.stack(parts) for parts in zip(*standing, strict=True))
         index = np.atleast_1d(inverse)
-        return axes[index], frames[index]
+        if np.all(values == 1.0):
+            axes, frames = (part[None] for part in self.own_axis)
+            return axes[index], frames[index]
+        bent = self.blade.planform.frames.bent(values, self.eta)
+        frames = np.stack([self._frames(value) for value in values]) if bent is None else bent
+        axes = stretched(self.own_axis[0], np.atleast_1d(prebend_scale))
+        return axes, frames if len(frames) == 1 else frames[index]
 
     @cached_property
     def own_axis(self) -> tuple[Array, Array]:
         """The reference axis (k, 3) [m] and the section frames (k, 3, 3) of the blade itself."""
-        return self._bent(1.0)
+        planform = self.blade.planform
+        return planform.definition.axis(self.eta), planform.frames(self.eta)
 
-    def _bent(self, prebend_scale: float) -> tuple[Array, Array]:
-        """Return the axis and the frames, which are carried along it; no window touches them."""
+    def _frames(self, prebend_scale: float) -> Array:
+        """Return the section frames (k, 3, 3) at one factor of the prebend."""
         change = AffineChange(prebend_scale=float(prebend_scale))
         axis = change.applied(self.blade.definition, Window()).axis
-        frames = replace(self.blade.planform.frames, axis=axis)
-        return axis(self.eta), frames(self.eta)
+        return replace(self.blade.planform.frames, axis=axis)(self.eta)
 
 
 def column(value: ArrayLike) -> Array:

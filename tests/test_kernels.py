@@ -74,7 +74,7 @@ def made(by, values, raw, target, *, edge=0.002, dtype=np.float64):
     still = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (k, b, 4)).copy()
     given = U, values, slopes, raw, target, still, own, known, chord, to_space, sections, measures
     looks = np.empty((b, k, 6))
-    by.made(*given, edge / chord, np.ones((k, b)), looks, False)
+    by.made(*given, edge / chord, np.ones((k, b)), looks, False, 0, 1)
     return own, known, sections, measures
 
 

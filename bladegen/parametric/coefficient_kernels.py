@@ -26,7 +26,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["linearised", "lines_slopes"]
 
-REVISION = 14  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 15  # of all that is compiled with these: with another text it is compiled anew
 TERMS = 20  # of the series of cos S and sin S / S; principal angles below 2 rad need 14
 
 
@@ -45,6 +45,8 @@ def linearised(
     kept: bool,
     result: Array,
     changes: Array,
+    first: int,
+    step: int,
 ) -> None:
     """Bring sections to size and to their chord lines; fill what comes out and its derivatives.
 
@@ -72,6 +74,8 @@ def linearised(
         Filled: coefficients of the sections in chords, edges as they are.
     changes : (k, b, r + 1, F, 2) array
         Filled: derivatives in t and in the relative thickness.
+    first, step : int
+        Which of the spans, as in a range.
     """
     spans, count, features, _ = coefficients.shape
     modes = t.shape[-1]
@@ -79,7 +83,7 @@ def linearised(
     room = points, moved, np.empty(len(u)), np.empty((2, 4, features, 2))
     rows, now = np.empty((4, features, 2)), np.empty((features, 2))
     raw, still = np.zeros((modes, features, 2)), np.zeros(4)
-    for k in range(spans):
+    for k in range(first, spans, step):
         for b in range(count):
             c = coefficients[k, b]
             shape_slopes(t[k, b], gram[k], M[k], raw)

@@ -12,7 +12,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["points_gradient", "points_slopes"]
 
-REVISION = 13  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 14  # of all that is compiled with these: with another text it is compiled anew
 BLOCK = 128  # points
 
 
@@ -29,6 +29,8 @@ def points_slopes(
     space_chain: Array,
     sections: Array,
     result: Array,
+    first: int,
+    step: int,
 ) -> None:
     """Fill points of sections and their derivatives in p directions.
 
@@ -49,13 +51,15 @@ def points_slopes(
         its map to space.
     sections, result : (b, k, n, 3), (b, k, n, 3, p) arrays
         Filled.
+    first, step : int
+        Which of the spans, as in a range.
     """
     spans, count, own = changes.shape[:3]
     n, p = values.shape[-1], chain.shape[-1]
     points = np.empty((2, n))
     rules, parts = np.empty((n // 2, SLOPES)), np.empty((own + 1, 2, n))
     rows, ways = np.empty((own + 4, n)), np.empty((own + 4, p))
-    for k in range(spans):
+    for k in range(first, spans, step):
         for b in range(count):
             combine(values[k], c[k, b], points)
             gap = finished(points, kind, width[b, k], rules)
@@ -132,17 +136,19 @@ def points_gradient(
     own: Array,
     in_width: Array,
     in_space: Array,
+    first: int,
+    step: int,
 ) -> None:
     """Carry a gradient of points (b, k, n, 3) back to what sections are made of.
 
     Filled are `own` (b, k, q), the gradient in a section's own coordinates, `in_width` (b, k), in
-    its edge's width, and `in_space` (b, k, 3, 3), in its map to space.
+    its edge's width, and `in_space` (b, k, 3, 3), in its map to space.  Spans are those of a range.
     """
     spans, count, directions, features = changes.shape[:4]
     n = values.shape[-1]
     points, g = np.empty((2, n)), np.empty((2, n))
     rules = np.empty((n // 2, SLOPES))
-    for k in range(spans):
+    for k in range(first, spans, step):
         for b in range(count):
             combine(values[k], c[k, b], points)
             gap = finished(points, kind, width[b, k], rules)

@@ -5,7 +5,7 @@ them on to points, or a gradient of points back to the parameters.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from bladegen.parametric.chain import Chain
 from bladegen.parametric.outline import Outline
 from bladegen.parametric.parameters import Parameters
 from bladegen.support.arrays import Array, Indices
+from bladegen.support.threads import shares_of, side_by_side
 
 __all__ = ["Linearisation"]
 
@@ -58,8 +59,11 @@ class Linearisation:
         changes = np.empty((*raw.shape[:2], self.parameters.modes + 1, *raw.shape[2:]))
         given = [batch.blade.u, outline.landmarks, outline.slopes, raw]
         given += [parts.weighted(t, batch.weight), parts.gram, parts.shapes[2], target]
-        kernels.linearised(
-            *_laid_out(*given, standing, moving), batch.chord_line == KEPT, result, changes
+        given = _laid_out(*given, standing, moving)
+        kept = batch.chord_line == KEPT
+        side_by_side(
+            partial(kernels.linearised, *given, kept, result, changes),
+            shares_of(target.size * changes.shape[2] * len(batch.blade.u)),
         )
         return result, changes
 
@@ -90,7 +94,8 @@ class Linearisation:
         sections, result = np.empty(shape), np.empty((*shape, chain.shape[-1]))
         to_space = self.chain.space[0] if to_space is None else to_space
         given = _laid_out(width, to_space, chain, width_chain, space_chain)
-        kernels.points_slopes(*_laid_out(values), c, changes, kind, *given, sections, result)
+        laid_out = *_laid_out(values), c, changes, kind, *given, sections, result
+        side_by_side(partial(kernels.points_slopes, *laid_out), shares_of(result.size))
         return sections, result
 
     def jacobian(self) -> tuple[Array, Array]:
@@ -130,9 +135,17 @@ class Linearisation:
         own, in_width = np.empty((*shape, changes.shape[2])), np.empty(shape)
         in_space = np.empty((*shape, 3, 3))
         given = _laid_out(width, self.chain.space[0], gradient)
-        kernels.points_gradient(
-            *_laid_out(self.outline.values), c, changes, kind, *given, own, in_width, in_space
+        laid_out = (
+            *_laid_out(self.outline.values),
+            c,
+            changes,
+            kind,
+            *given,
+            own,
+            in_width,
+            in_space,
         )
+        side_by_side(partial(kernels.points_gradient, *laid_out), shares_of(gradient.size))
         parts = (
             np.einsum(how, given, way)
             for how, given, way in zip(

@@ -34,6 +34,7 @@ from bladegen.parametric.quantities import Quantities
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import instance, numbers, shown
 from bladegen.support.arrays import Array, ArrayLike, Mask, readonly
+from bladegen.support.threads import shares_of
 
 __all__ = ["ParametricBlade"]
 
@@ -180,6 +181,7 @@ class ParametricBlade:
 
     def _evaluated(self, vectors: Array, **how: Any) -> Batch:
         amounts, modes = self._known.amounts(vectors), self._known.modes
+        how["shares"] = shares_of(len(vectors) * len(self.eta) * len(self.blade.u))
         return self._batch.evaluate(amounts[..., :modes], change_of(amounts, modes), **how)
 
     def sections(self, x: ArrayLike) -> Array:

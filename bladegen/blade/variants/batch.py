@@ -6,7 +6,7 @@ to rounding.  Arrays are (k, b, ...), spans first, until sections come out as (b
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from bladegen.shapes import affine
 from bladegen.shapes.domain import Domain
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array, Indices, readonly
+from bladegen.support.threads import side_by_side
 
 __all__ = ["FAULTS", "LOST_THICKNESS", "Batch", "SectionBatch"]
 
@@ -138,6 +139,7 @@ class SectionBatch:
         dtype: type = np.float64,
         measured: bool = False,
         tested: bool = True,
+        shares: int = 1,
     ) -> Batch:
         """Make the sections of variants.
 
@@ -153,6 +155,8 @@ class SectionBatch:
             Measure areas, centroids and so on.
         tested : bool
             Look for faults and fill looks; without it both are of no length.
+        shares : int
+            Threads at work.
         """
         shape = len(t), len(self.eta)
         raw, target = self.coefficients(t), self.target(change, len(t))
@@ -162,7 +166,8 @@ class SectionBatch:
         looks = np.empty((*shape, len(CHARACTERISTICS)) if tested else (0, 0, 0))
         width = least_width(self.blade.trailing_edge, target.T, chord)
         if width is not None:
-            faults = self._made(raw, target, chord, width, to_space, sections, measures, looks)
+            given = raw, target, chord, width, to_space, sections, measures, looks
+            faults = self._made(*given, shares)
         else:
             plain = np.broadcast_to(np.eye(3), to_space.shape)
             profiles = np.empty(sections.shape)
@@ -234,6 +239,7 @@ class SectionBatch:
         sections: Array,
         measures: Array,
         looks: Array,
+        shares: int = 1,
     ) -> Indices:
         """Fill looks, sections and measures that have a length; return what is wrong, (k, b)."""
         from bladegen.blade.variants import kernels
@@ -252,10 +258,8 @@ class SectionBatch:
         flat = self._plain_ruling[:, None] / target
         given += [own, known, chord, to_space, sections, measures, edge, flat, looks]
         # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise
-        kernels.made(
-            *(np.require(values, requirements=["C", "W"]) for values in given),
-            self.chord_line == KEPT,
-        )
+        laid_out = (np.require(values, requirements=["C", "W"]) for values in given)
+        side_by_side(partial(kernels.made, *laid_out, self.chord_line == KEPT), shares)
         return self._faults(raw, own, known) if known.size else known
 
     def _faults(self, raw: Array, own: Array, known: Indices) -> Indices:

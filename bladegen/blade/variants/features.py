@@ -84,10 +84,11 @@ class Features:
         k, r = self._carried.shape[:2]
         count = len(t)
         weighted = self.weighted(t, weight)
-        pairs = (weighted[..., :, None] * weighted[..., None, :]).reshape(k, count, r * r)
-        squares = np.zeros((k, count, 4))
-        for j in range(r * r):  # a matrix product would round by how many variants there are
-            squares += pairs[..., j, None] * self._gram[:, None, j]
+        squares, gram = np.zeros((k, count, 4)), self._gram.reshape(k, r, r, 1, 4)
+        for i in range(r):  # a matrix product would round by how many variants there are
+            for j in range(i, r):
+                both = gram[:, i, j] if i == j else gram[:, i, j] + gram[:, j, i]
+                squares += (weighted[..., i] * weighted[..., j])[..., None] * both
         cosine, sinc = grassmann.exp_factors(squares.reshape(k, count, 2, 2))
         result = np.empty((k, count, 2 * r + 3, 2))
         result[:, :, :2] = cosine @ M[:, None]

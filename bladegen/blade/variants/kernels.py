@@ -26,7 +26,7 @@ from bladegen.support.compiled import ONE, ZERO, compiled
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "lines", "made"]
 
-REVISION = 21  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 22  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 
@@ -49,6 +49,8 @@ def made(
     flat: Array,
     looks: Array,
     kept: bool,
+    first: int,
+    step: int,
 ) -> None:
     """Test sections, bring them to unit chord and relative thickness, finish and place them.
 
@@ -85,11 +87,13 @@ def made(
         Filled: `sanity.CHARACTERISTICS`.
     kept : bool
         Whether `standing` holds chord lines; else motions.
+    first, step : int
+        Which of the spans, as in a range.
     """
     spans, count, features, _ = coefficients.shape
     points, moved = np.empty((2, len(u))), np.empty((2, len(u)))
     now, work = np.empty((features, 2)), np.empty(len(u))
-    for k in range(spans):
+    for k in range(first, spans, step):
         for b in range(count):
             c = coefficients[k, b]
             combine(values[k], c, points)

@@ -88,6 +88,28 @@ def test_build_makes_grids_as_asked_for(tmp_path):
     assert "leading-edge spacing: got 0.5, allowed is" in str(refused.exception)
 
 
+@pytest.mark.parametrize(
+    ("formats", "options", "idle"),
+    [
+        ("cgns", ["--y-plus", "1", "--tip", "round"], ["--y-plus"]),
+        ("cgns", ["--unit", "mm"], ["--unit"]),
+        ("cgns,p3d", ["--unit", "mm"], []),
+        ("step", ["--unit", "mm", "--grid-around", "129", "--light"], ["--unit", "--grid-around"]),
+        ("stl", ["--stations", "50", "--tolerance", "1mm"], ["--tolerance"]),
+        ("volume.cgns", ["--reynolds", "1e7", "--distance", "2m"], ["--reynolds"]),
+        ("volume.cgns", ["--reynolds", "1e7", "--y-plus", "1"], []),
+        ("yaml", ["--polars", "none", "--element", "2m"], ["--element"]),
+    ],
+)
+def test_options_that_change_no_file_are_named(formats, options, idle, monkeypatch):
+    said = []
+    monkeypatch.setattr(build, "_build", lambda *_: None)
+    monkeypatch.setattr(build, "remark", said.append)
+    run("build", "nrel5mw", "-o", "x", "--landmarks", "51", "--format", formats, *options)
+    assert [line.partition(":")[0] for line in said] == idle
+    assert all(f"none of the files asked for ({formats.replace(',', ', ')})" in s for s in said)
+
+
 def test_build_that_misses_its_tolerance_ends_with_1(tmp_path, monkeypatch):
     monkeypatch.setattr("bladegen.surface.fitting.MAX_POLES", 1000)
     result = run(

@@ -305,8 +305,11 @@ def test_what_makes_no_case_is_refused(asked, said):
 
 def test_what_a_definition_does_not_name_is_asked_for():
     known = blade("dtu10mw")
-    with pytest.raises(GeometryError, match=r"names no tip speed ratio; .*--tip-speed-ratio 8"):
+    both = r"no tip speed ratio and no rotor speed; give them: --tip-speed-ratio 8 --rotor-speed"
+    with pytest.raises(GeometryError, match=both):
         rotor_case(known)
+    with pytest.raises(GeometryError, match=r"names no tip speed ratio; give one: --tip-speed-rat"):
+        rotor_case(known, wind=8.0)
     with pytest.raises(GeometryError, match=r"names no rotor speed; .*--rotor-speed"):
         rotor_case(known, ratio=8.0)
     two = replace(known.definition, rotor=replace(known.definition.rotor, blades=2))

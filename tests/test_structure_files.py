@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from test_structure import WAYS, read
 
 import bladegen as bg
+from bladegen.definition.rotor import Rotor
 from bladegen.definition.structure.positions import LEADING_EDGE, Arc, PlaneCut, Shifted
 from bladegen.formats.common.document import Node, Notes
 from bladegen.formats.windio import turbine_facts, version1
@@ -212,6 +213,34 @@ def test_facts_of_the_turbine_go_along_in_windio_2_and_in_part_in_windio_1(plain
     assert any(finding.where == "turbine" for finding in said)
     kept = bg.read(tmp_path / "one.yaml").rotor.facts
     assert kept == tuple(fact for fact in plain.rotor.facts if fact[0].startswith("assembly"))
+
+
+# of IEA 22 MW: windIO 1 as its repository has it, and what windIO 2 of the same turbine says
+OLDER = {
+    "assembly": {"rotor_diameter": 284.0},
+    "control": {
+        "supervisory": {"maxTS": 105.0},
+        "torque": {"tsr": 9.153211158238001, "VS_maxspd": 0.7500028861670033},
+    },
+}
+
+
+def test_windio_1_says_how_the_rotor_turns_in_other_words():
+    found = turbine_facts.read_older(Node(OLDER, "", Notes()))
+    rotor = Rotor(facts=found)
+    assert_allclose(rotor.design_ratio, 9.15, rtol=1e-3)
+    assert_allclose(rotor.speed * 30.0 / np.pi, 7.061131867192266, rtol=1e-5)
+    slow = OLDER["control"] | {"torque": {"VS_maxspd": 0.5}}
+    turned = turbine_facts.read_older(Node(OLDER | {"control": slow}, "", Notes()))
+    assert_allclose(Rotor(facts=turned).speed, 0.5)
+    assert Rotor(facts=turned).design_ratio is None
+
+
+@pytest.mark.parametrize("junk", [None, "fast", -1.0, 0, True, float("inf"), float("nan"), [9.0]])
+def test_what_is_no_speed_in_windio_1_is_passed_over(junk):
+    control = {"supervisory": {"maxTS": junk}, "torque": {"tsr": junk, "VS_maxspd": junk}}
+    assert turbine_facts.read_older(Node({"control": control}, "", Notes())) == ()
+    assert turbine_facts.read_older(Node({"control": junk}, "", Notes())) == ()
 
 
 @pytest.mark.parametrize("junk", [None, "x" * 101, [1.0], {"a": 1}, True])

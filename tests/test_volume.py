@@ -1,6 +1,7 @@
 """Volumes around blades: cells, blocks, files, measured here and by readers that are not ours."""
 
 import os
+import re
 import shutil
 import subprocess
 import zipfile
@@ -17,6 +18,7 @@ from test_grid import enclosed
 import bladegen as bg
 from bladegen.blade.blade import Blade
 from bladegen.blade.edges import Sharp
+from bladegen.definition.rotor import Rotor
 from bladegen.errors import GeometryError
 from bladegen.exports.cases.volume_mesh import mesh_of
 from bladegen.formats.bundled import bundled
@@ -27,6 +29,7 @@ from bladegen.surface.volumes import volume_files
 from bladegen.surface.volumes.front import front_of
 from bladegen.surface.volumes.volume import Extrusion, volume_of
 from bladegen.surface.wall_spacing import first_height
+from bladegen.views.tables import volume_rows
 
 COARSE = Spacing(around=65, along=21, edge=8, leading_edge=4e-3, root=0.05)
 QUICK = Extrusion(first_height=2e-4, growth=1.3, distance=6.0)
@@ -156,6 +159,31 @@ def test_the_first_height_follows_from_y_plus(blade):
     assert Extrusion().height(blade) == Extrusion.DEFAULT_HEIGHT
 
 
+def test_without_a_reynolds_number_it_is_that_of_the_rotor_at_its_rated_speed(blade):
+    """12.1 turns a minute at 1.5 + 0.75 x 61.5 m, in air of 1.46e-5 m2/s: NREL 5 MW."""
+    wanted = 12.1 * np.pi / 30.0 * (1.5 + 0.75 * 61.5) * blade.chord(0.75) / 1.46e-5
+    assert_allclose(Extrusion(y_plus=1.0).number(blade), wanted, rtol=1e-6)
+    assert_allclose(
+        Extrusion(y_plus=1.0).height(blade), first_height(wanted, blade.chord(0.75), 1.0), rtol=1e-6
+    )
+    made = volume_of(blade, from_blade(blade, COARSE), replace(QUICK, first_height=None, y_plus=9))
+    assert_allclose(made.figures["reynolds"], wanted, rtol=1e-6)
+    bare = replace(blade, definition=replace(blade.definition, rotor=Rotor()))
+    with pytest.raises(GeometryError, match=r"y_plus: got 1 without a Reynolds .* --reynolds 1e7"):
+        Extrusion(y_plus=1.0).height(bare)
+
+
+def test_the_main_figures_are_shown(volume):
+    rows = dict(volume_rows(volume.figures))
+    assert rows["volume"] == f"{volume.figures['cells']} cells in {len(volume.layers) - 1} layers"
+    assert rows["volume's first cells"] == "0.2000 mm high"
+    bad = volume.figures | {"largest_skewness": 7.09, "reynolds": 1.2e7}
+    assert dict(volume_rows(bad))["volume's largest skewness"] == (
+        "7.1, above the 4 that checkMesh allows"
+    )
+    assert "Reynolds number of 1.2e+07" in dict(volume_rows(bad))["volume's first cells"]
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -163,7 +191,6 @@ def test_the_first_height_follows_from_y_plus(blade):
         ({"smoothing": 0.1}, "smoothing: got 0.1, allowed is 0.5 to 2"),
         ({"first_height": 0.0}, "first_height: got 0 m, must be positive"),
         ({"distance": -1.0}, "distance: got -1 m, must be positive"),
-        ({"y_plus": 1.0}, "y_plus: got 1 without a Reynolds number .* --reynolds 1e7"),
         ({"y_plus": 1.0, "first_height": 1.0}, "first_height, y_plus: both are given"),
     ],
 )
@@ -182,9 +209,15 @@ def test_what_would_fold_is_refused_with_its_place(blade):
     grid = from_blade(blade, COARSE)
     thick = Extrusion(first_height=1.0, growth=1.5, distance=200.0, smoothing=0.5)
     with pytest.raises(
-        GeometryError, match=r"would fold in layer \d+, .* m off the .* % span; give"
+        GeometryError, match=r"would fold in layer \d+, .* m off the .* % span; give --distance"
     ):
         volume_of(blade, grid, thick)
+    fine = from_blade(blade, replace(COARSE, around=131))
+    with pytest.raises(GeometryError, match=r"fewer points: --grid-around 129 --grid-along 81"):
+        volume_of(blade, fine, thick)
+    fine = from_blade(blade, replace(COARSE, edge=18))
+    with pytest.raises(GeometryError, match=r"across the trailing edge: --grid-edge 16"):
+        volume_of(blade, fine, thick)
 
 
 def test_a_surface_that_is_folded_is_refused(blade):
@@ -275,6 +308,21 @@ def accepted(case):
     ).stdout
     failed = [line for line in said.splitlines() if line.startswith(" ***")]
     return said, [line for line in failed if "aspect ratio" not in line]
+
+
+@pytest.mark.skipif(shutil.which("checkMesh") is None, reason="OpenFOAM is not installed")
+def test_angles_and_skewness_are_checkmesh_s(blade, tmp_path):
+    made = volume_of(blade, from_blade(blade, COARSE), QUICK)
+    path = bg.export(blade, tmp_path / "a.volume.foam.zip", spacing=COARSE, extrusion=QUICK)
+    with zipfile.ZipFile(path) as archive:
+        archive.extractall(tmp_path / "case")
+    said, _ = accepted(tmp_path / "case")
+    most, mean = re.search(r"non-orthogonality Max: (\S+) average: (\S+)", said).groups()
+    skewed = re.search(r"Max skewness = ([\d.]+)", said)[1]
+    figures = made.figures
+    assert_allclose(figures["largest_non_orthogonality_deg"], float(most), rtol=1e-3)
+    assert_allclose(figures["mean_non_orthogonality_deg"], float(mean), rtol=1e-3)
+    assert_allclose(figures["largest_skewness"], float(skewed), rtol=1e-3)
 
 
 def exported(name, tip, path):

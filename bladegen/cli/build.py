@@ -19,7 +19,7 @@ from bladegen.cli.options.common import (
 from bladegen.cli.options.groups import grouped
 from bladegen.cli.options.perturbing import NO_CHANGES, Changes
 from bladegen.cli.options.producing import PRODUCING, Producing
-from bladegen.cli.terminal import print_summary, progress_bar
+from bladegen.cli.terminal import print_summary, progress_bar, remark
 from bladegen.errors import BladegenError
 
 __all__ = ["build", "perturb"]
@@ -85,7 +85,9 @@ def build(
             else metres(hub_radius, "hub-radius", example="2m"),
             cone=None if precone is None else radians(precone, "precone"),
         )
-    _build(made, output, _with(suffixes, {CURVES: curves, STRUCTURE: structure}), options, whole)
+    suffixes = _with(suffixes, {CURVES: curves, STRUCTURE: structure})
+    _say_what_is_idle(producing, suffixes, rotor=rotor)
+    _build(made, output, suffixes, options, whole)
 
 
 @grouped
@@ -110,7 +112,29 @@ def perturb(
     options, suffixes = producing.options(), suffixes_of(formats)
     made = changes.applied(making.blade(blade, landmarks))
     made = made.mirror_image() if mirror else made
-    _build(made, output, _with(suffixes, {CURVES: curves, STRUCTURE: structure}), options)
+    suffixes = _with(suffixes, {CURVES: curves, STRUCTURE: structure})
+    _say_what_is_idle(producing, suffixes)
+    _build(made, output, suffixes, options)
+
+
+def _say_what_is_idle(
+    producing: Producing, suffixes: tuple[str, ...], *, rotor: bool = False
+) -> None:
+    """Say which options were given that none of the files to be made depends on."""
+    from bladegen.exports.build import SPANWISE
+    from bladegen.exports.options import Kind
+    from bladegen.exports.registry import format_of, suffix_of
+
+    paths = [Path(f"x.{suffix.lower().lstrip('.')}") for suffix in suffixes]
+    files = [(format_of(path).kind, suffix_of(path)) for path in paths]
+    files.append((Kind.table, SPANWISE))
+    if rotor:
+        files += [(Kind.solid, ".step"), (Kind.triangles, ".glb")]
+    for option in producing.idle(files):
+        remark(
+            f"{option}: changes none of the files asked for ({', '.join(suffixes)}); "
+            "bladegen build -h says which files it is of"
+        )
 
 
 def _with(formats: tuple[str, ...], asked: dict[str, bool]) -> tuple[str, ...]:

@@ -22,10 +22,12 @@ __all__ = [
     "space_figures",
     "space_rows",
     "station_rows",
+    "volume_rows",
 ]
 
 
 SHOWN_DIRECTIONS = 12
+SKEWED, STEEP = 4.0, 70.0  # OpenFOAM's checkMesh: skewness, and degrees, that it remarks on
 LEAST_DIGITS = 4  # of a figure that is not zero
 
 
@@ -212,8 +214,37 @@ def report_rows(report: dict[str, Any]) -> list[list[str]]:
             ],
             ["grid's smallest cell", f"{grid['smallest_cell_m2'] * 1e6:.3g} mm2"],
         ]
+    if "volume" in report:
+        rows += volume_rows(report["volume"])
     rows.append(["time", f"{sum(report['seconds'].values()):.1f} s"])
     return rows
+
+
+def volume_rows(volume: dict[str, Any]) -> list[list[str]]:
+    """Return the main figures of a volume: cells, heights, and quality as checkMesh has it."""
+    away, first = volume["distance_m"], volume["first_height_m"][0]
+    number = volume.get("reynolds")
+    by = "" if number is None else f", by y+ at a Reynolds number of {number:.3g}"
+    skewed, leaning = volume["largest_skewness"], volume["largest_non_orthogonality_deg"]
+    beyond = f", above the {SKEWED:g} that checkMesh allows" if skewed > SKEWED else ""
+    return [
+        ["volume", f"{volume['cells']} cells in {volume['layers']} layers"],
+        ["volume's first cells", f"{digits(1e3 * first, 3)} mm high{by}"],
+        ["volume reaches", f"{away['least']:.3g} to {away['largest']:.3g} m off the wall"],
+        ["volume's folded cells", str(volume["cells_not_positive"])],
+        [
+            "volume's smallest scaled Jacobian",
+            f"{volume['smallest_scaled_jacobian']:.2f} of 1, less than "
+            f"{volume['scaled_jacobian_of_a_thousandth']:.2f} in a thousandth of cells",
+        ],
+        [
+            "volume's non-orthogonality",
+            f"{volume['mean_non_orthogonality_deg']:.1f} deg in the mean, {leaning:.1f} at most, "
+            f"above {STEEP:g} at {volume['faces_over_70_deg']} faces",
+        ],
+        ["volume's largest skewness", f"{skewed:.1f}{beyond}"],
+        ["volume's largest growth", f"{volume['largest_growth']:.2f} from layer to layer"],
+    ]
 
 
 def shown(value: Any) -> str:

@@ -1,6 +1,8 @@
 """Options of how a blade becomes files: solids, meshes, structured grids, volumes, definitions."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import partial
 from typing import Annotated, Any
@@ -179,6 +181,22 @@ class Producing:
                 root=self.root_spacing,
             ),
         )
+
+    def idle(self, files: Sequence[tuple[Any, str]]) -> list[str]:
+        """Return the options that change no file of some kinds and suffixes, though given.
+
+        What an option changes is what files say that they are made with (`Options.settings`).
+        """
+        made, found = self.options(), []
+        for field in fields(self):
+            if getattr(self, field.name) == field.default:
+                continue
+            plain = Producing(**(vars(self) | {field.name: field.default}))
+            with suppress(BladegenError):  # of two that go together, and so change something
+                without = plain.options()
+                if all(made.settings(*one) == without.settings(*one) for one in files):
+                    found.append(f"--{field.name.replace('_', '-')}")
+        return found
 
 
 PRODUCING = Producing()

@@ -2,15 +2,17 @@
 
 Nothing here is used by bladegen; tools that run the turbine (WISDEM) ask for it.  A fact is a
 number or a short text under the path at which it stands in windIO 2, in the file's own unit;
-windIO 1 has the same members of the assembly.
+windIO 1 has the same members of the assembly.  How its rotor turns stands elsewhere there, and in
+other units (rad/s and m/s), and is brought to windIO 2's.
 """
 
 from collections.abc import Iterable
+from math import inf, pi
 
 from bladegen.formats.common.document import Node
 from bladegen.formats.windio.writing import Document
 
-__all__ = ["Facts", "add", "read"]
+__all__ = ["Facts", "add", "read", "read_older"]
 
 Facts = tuple[tuple[str, str | float], ...]
 LONGEST = 100  # characters of a text
@@ -55,6 +57,42 @@ def read(root: Node, places: Iterable[str] = tuple(KEPT)) -> Facts:
             if isinstance(value, str | int | float) and _plain(value):
                 found.append((f"{path}.{name}", value))
     return tuple(found)
+
+
+def read_older(root: Node) -> Facts:
+    """Return the facts of a windIO 1 document: its assembly, design tip speed ratio, rotor speed.
+
+    The rated speed is the lower of the largest rotor speed and the one at which the tip is as fast
+    as it may be: the windIO 2 file of IEA 22 MW has what its windIO 1 file makes by that.
+    """
+    control = {
+        name: _number(root, f"control.{place}")
+        for name, place in (
+            ("tsr", "torque.tsr"),
+            ("turning", "torque.VS_maxspd"),  # rad/s
+            ("tip", "supervisory.maxTS"),  # m/s
+        )
+    }
+    found = list(read(root, ("assembly",)))
+    diameter, tip = _number(root, "assembly.rotor_diameter"), control["tip"]
+    bounds = [] if control["turning"] is None else [control["turning"]]
+    if tip is not None and diameter is not None:
+        bounds.append(2.0 * tip / diameter)
+    if bounds:
+        found.append(("control.rated_rotor_speed", min(bounds) * 30.0 / pi))
+    if control["tsr"] is not None:
+        found.append(("control.optimal_tsr", control["tsr"]))
+    return tuple(found)
+
+
+def _number(root: Node, path: str) -> float | None:
+    """Return what stands at a path, if it is a positive number."""
+    held = root.value
+    for key in path.split("."):
+        held = held.get(key) if isinstance(held, dict) else None
+    if isinstance(held, bool) or not isinstance(held, int | float):
+        return None
+    return float(held) if 0.0 < held < inf else None
 
 
 def _plain(value: str | float) -> bool:

@@ -50,7 +50,7 @@ LAYOUT = Layout(
     angle=1.0,
     turn=Range(-math.pi / 2, math.pi / 2, "rad"),
     structure=reading1.read,
-    facts=partial(turbine_facts.read, places=("assembly",)),
+    facts=turbine_facts.read_older,
 )
 recognises = partial(reading.recognises, layout=LAYOUT)
 read = partial(reading.read, layout=LAYOUT)

@@ -13,11 +13,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.definition.estimates import AIR
 from bladegen.errors import GeometryError, visible
 from bladegen.support.arguments import amount, require_within
 from bladegen.support.arrays import Array, Indices, readonly
 from bladegen.support.values import brief
-from bladegen.surface.grids.grid import Grid
+from bladegen.surface.grids.grid import Grid, Spacing
 from bladegen.surface.volumes.front import Front, front_of
 from bladegen.surface.volumes.marching import layers
 from bladegen.surface.volumes.volume_quality import corner_jacobians, figures_of
@@ -29,6 +30,7 @@ GROWTHS = 1.05, 1.5
 SMOOTHINGS = 0.5, 2.0
 MOST = 400  # layers
 STATION = 0.75  # of the span, whose chord a Reynolds number is of
+COARSE = 129, 81, 16  # points around, along, across: all bundled blades are grown (docs/grids.md)
 REACH = 0.2  # of the blade's length: the distance by default
 
 
@@ -49,7 +51,8 @@ class Extrusion:
         Times the smoothing of steps along a layer, and the spreading of lines.
     y_plus, reynolds : float, optional
         The distance in wall units that the first cells' height is, and the Reynolds number of the
-        chord at 75 % span, by the friction of a flat plate (`wall_spacing`).
+        chord at 75 % span, by the friction of a flat plate (`wall_spacing`); that of the blade's
+        rotor at its rated speed, in air, if not given.
     """
 
     first_height: float | None = None
@@ -74,17 +77,33 @@ class Extrusion:
                 "first_height, y_plus: both are given, and either says how high first cells are; "
                 "leave one out"
             )
-        if self.y_plus is not None and self.reynolds is None:
-            raise GeometryError(
-                f"y_plus: got {self.y_plus:g} without a Reynolds number of the chord at "
-                f"{100 * STATION:g} % span; give one too: --reynolds 1e7"
-            )
 
     def height(self, blade: Blade) -> float:
         """Return the first cells' height [m] on a blade."""
-        if self.y_plus is None or self.reynolds is None:
+        if self.y_plus is None:
             return self.DEFAULT_HEIGHT if self.first_height is None else self.first_height
-        return float(first_height(self.reynolds, float(blade.chord(STATION)), self.y_plus))
+        chord = float(blade.chord(STATION))
+        return float(first_height(self.number(blade), chord, self.y_plus))
+
+    def number(self, blade: Blade) -> float:
+        """Return the Reynolds number of the chord at 75 % span.
+
+        Raises
+        ------
+        GeometryError
+            If none is given and the blade's definition does not say how fast its rotor turns.
+        """
+        if self.reynolds is not None:
+            return self.reynolds
+        rotor = blade.definition.rotor
+        if rotor.speed is None:
+            raise GeometryError(
+                f"y_plus: got {self.y_plus:g} without a Reynolds number of the chord at "
+                f"{100 * STATION:g} % span, and {visible(blade.name)} names no rotor speed; give "
+                "one too: --reynolds 1e7"
+            )
+        radius = (rotor.hub_radius or 0.0) + STATION * blade.length
+        return rotor.speed * radius * float(blade.chord(STATION)) / AIR
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +120,8 @@ class Volume:
         Points [m] of each layer, the wall first.
     first_height, growth : float
         As asked for [m], [-].
+    reynolds : float, optional
+        That of which the height follows, if it follows from y+.
     """
 
     grid: Grid
@@ -108,6 +129,7 @@ class Volume:
     layers: Array
     first_height: float
     growth: float
+    reynolds: float | None = None
 
     __repr__ = brief
 
@@ -124,6 +146,8 @@ class Volume:
         """How good its cells are."""
         counts = [(block.name, block.eta[1:, 1:].size) for block in self.grid.blocks]
         asked = {"first_height_asked_m": self.first_height, "growth_asked": self.growth}
+        if self.reynolds is not None:
+            asked["reynolds"] = self.reynolds
         return asked | figures_of(self.front, self.layers, counts)
 
     def block(self, number: int) -> Array:
@@ -176,8 +200,7 @@ def volume_of(
             away = float(gone[front.cells[worst]].mean())
             raise GeometryError(
                 f"{visible(grid.name)}: cells would fold in layer {len(points)}, {away:.3g} m off "
-                f"{_place(grid, front.cells, worst)}; give --distance {0.8 * away:.2g}m, another "
-                "--smoothing or --growth, or other numbers of points"
+                f"{_place(grid, front.cells, worst)}; give {_instead(grid.spacing, 0.8 * away)}"
             )
         points.append(layer)
         if np.median(reached) >= distance:
@@ -187,7 +210,18 @@ def volume_of(
                 f"distance: {MOST} layers reach {np.median(reached):.3g} m, asked for are "
                 f"{distance:g} m; give more growth, or less distance"
             )
-    return Volume(grid, front, np.stack(points), first, made.growth)
+    number = None if made.y_plus is None else made.number(blade)
+    return Volume(grid, front, np.stack(points), first, made.growth, number)
+
+
+def _instead(spacing: Spacing, nearer: float) -> str:
+    """Say what may be given where cells would fold: fewer points, if there are more than needed."""
+    around, along, edge = COARSE
+    if spacing.edge > edge:
+        return f"fewer cells across the trailing edge: --grid-edge {edge}"
+    if spacing.around > around or spacing.along > along:
+        return f"fewer points: --grid-around {around} --grid-along {along} --grid-edge {edge}"
+    return f"--distance {nearer:.2g}m, another --smoothing or --growth, or other numbers of points"
 
 
 def _place(grid: Grid, cells: Indices, cell: int) -> str:

@@ -87,7 +87,7 @@ def figures_of(front: Front, layers: Array, families: list[tuple[str, int]]) -> 
         },
         "scaled_jacobian_of_a_thousandth": float(np.quantile(np.concatenate(scaled), 1e-3)),
         "largest_non_orthogonality_deg": float(np.degrees(every.max())),
-        "mean_non_orthogonality_deg": float(np.degrees(every.mean())),
+        "mean_non_orthogonality_deg": float(np.degrees(np.arccos(np.cos(every).mean()))),
         "faces_over_70_deg": int(np.count_nonzero(every > np.radians(70.0))),
         "largest_skewness": max(skewed),
     }

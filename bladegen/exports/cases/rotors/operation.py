@@ -10,7 +10,7 @@ from math import degrees, hypot, pi, radians
 
 from bladegen.blade.blade import Blade
 from bladegen.definition.estimates import AIR
-from bladegen.errors import GeometryError
+from bladegen.errors import GeometryError, visible
 from bladegen.support.arguments import require_within
 
 __all__ = ["DENSITY", "REFERENCE", "Operation", "operation_of"]
@@ -130,9 +130,8 @@ def operation_of(
     if ratio is None and (wind is None or speed is None):
         ratio = facts.design_ratio
         if ratio is None:
-            raise GeometryError(
-                f"{blade.name}: names no tip speed ratio; give one: --tip-speed-ratio 8"
-            )
+            alone = facts.speed is None and wind is None and speed is None
+            raise GeometryError(_unnamed(blade.name, *(["rotor speed"] if alone else [])))
         told.append(f"tip speed ratio {ratio:.3g}")
     if speed is None:
         rated = facts.speed
@@ -142,8 +141,8 @@ def operation_of(
                 speed, told = rated, [f"rated speed {rated / TURN:.4g} 1/min"]
         elif rated is None:
             raise GeometryError(
-                f"{blade.name}: names no rotor speed; give one, --rotor-speed 9.6 a minute, or a "
-                "wind, --wind 10"
+                f"{visible(blade.name)}: its file names no rotor speed; give one, --rotor-speed "
+                "9.6 a minute, or a wind, --wind 10"
             )
         else:
             speed = rated
@@ -157,3 +156,10 @@ def operation_of(
         told.append("zero pitch" if fine is None else f"fine pitch {fine:g} degrees")
     chord = float(blade.chord(REFERENCE))
     return Operation(wind, speed, pitch, radius, chord, reach, ", ".join(told))
+
+
+def _unnamed(name: str, *besides: str) -> str:
+    """Say that a file names no tip speed ratio, nor what else is missing, and what to give."""
+    lost = " and no ".join(["tip speed ratio", *besides])
+    give = "them: --tip-speed-ratio 8 --rotor-speed 9.6" if besides else "one: --tip-speed-ratio 8"
+    return f"{visible(name)}: its file names no {lost}; give {give}"

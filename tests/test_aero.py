@@ -328,6 +328,27 @@ def test_conditions_come_from_the_file_and_from_what_is_given():
         Conditions(mean_wind=-1.0)
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        (
+            "rated_power",
+            15e12,
+            r"got 1\.5e\+07 MW, allowed is up to 1000 MW; --rated-power is in MW",
+        ),
+        ("tip_speed", 9000.0, "got 9000 m/s, allowed is up to 340 m/s"),
+        ("mean_wind", 85.0, "got 85 m/s, allowed is up to 50 m/s"),
+        ("air_density", 1225.0, "got 1225 kg/m3, allowed is up to 10 kg/m3"),
+        ("cut_in", 300.0, "got 300 m/s, allowed is up to 100 m/s"),
+        ("cut_out", 2500.0, "got 2500 m/s, allowed is up to 100 m/s"),
+        ("weibull_shape", 200.0, "got 200, allowed is up to 20"),
+    ],
+)
+def test_a_condition_with_a_slip_in_its_unit_is_refused(name, value, told):
+    with pytest.raises(BladegenError, match=f"{name}: {told}"):
+        Conditions(**{name: value})
+
+
 # ---- the command -------------------------------------------------------------------------------
 
 
@@ -344,13 +365,36 @@ def test_a_blade_is_evaluated_beside_its_baseline(tmp_path):
     assert shown.exit_code == 0
     assert (tmp_path / "rotor.svg").stat().st_size > 10_000
     assert max(variant["power_W"]) == 5e6
+    assert variant["mass_t"] == pytest.approx(baseline["mass_t"], rel=0.01)
+    assert baseline["mass_t"] == pytest.approx(16.43, rel=0.01)
     for word in ("annual energy, GWh", "change", "nrel5mw-perturbed", "Cp, variant"):
         assert word in shown.output
 
 
+@pytest.mark.parametrize(
+    ("power", "told"),
+    [
+        ("1e-5", "10 W on a rotor of 240.8 m are 0.00022 W/m2, turbines have 150 to 600"),
+        ("999", "is not reached up to the cut-out of 25 m/s"),
+        ("15", None),
+    ],
+)
+def test_a_rated_power_that_is_no_turbines_is_noted(power, told):
+    shown = run("evaluate", "iea15mw", "--network", "xxsmall", "--rated-power", power).output
+    assert (f"note: rated power: {told}" in shown) if told else ("note:" not in shown)
+    assert "rated wind speed, m/s" in shown
+
+
 def test_what_is_missing_is_said_in_a_line(monkeypatch):
-    shown = run("evaluate", "dtu10mw", "--network", "xxsmall")
-    assert "give one: --rated-power" in shown.output
+    words = "evaluate", "dtu10mw", "--network", "xxsmall"
+    shown = run(*words)
+    assert "give one in MW: --rated-power 10" in shown.output
+    assert "rated wind" not in shown.output
+    assert "wind at the largest tip speed" in shown.output
+    (figures,) = json.loads(run(*words, "--json").output)["blades"]
+    assert figures["rated_wind_m_s"] is figures["mass_t"] is None
+    ratio, limit = figures["tip_speed_ratio"], figures["tip_speed_wind_m_s"]
+    assert ratio * limit == pytest.approx(80.0)
     for words, error in (
         (("--network", "huge"), "network: got 'huge', allowed are xxsmall"),
         (("--hub-radius", "far"), "hub-radius: got 'far'"),

@@ -199,6 +199,20 @@ def test_an_unknown_reynolds_number_stays_unknown(tmp_path):
     assert bg.read(tmp_path / "blade.dat").stations[0].airfoil.polars[0].configuration == "clean"
 
 
+@pytest.mark.parametrize("suffix", ["csv", "xlsx"])
+def test_a_format_without_polars_says_that_they_are_left_out(tmp_path, suffix):
+    def said(blade, **asked):
+        findings = bg.write(blade, tmp_path / f"blade.{suffix}", **asked)
+        return [str(one) for one in findings if str(one).startswith("polars: ")]
+
+    (line,) = said(with_polars(4e6))
+    assert line.startswith("polars: have no place in spanwise table (")
+    assert line.endswith("; left out")
+    assert said(tenth()) == []
+    assert said(tenth(), polars="keep") == said(tenth(), polars="none") == []
+    assert said(tenth(), polars="estimate") == [line]
+
+
 def test_polars_that_go_leave_no_files_behind(tmp_path):
     blade = with_polars(4e6)
     for suffix in ("dat", "htc"):

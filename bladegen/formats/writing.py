@@ -75,13 +75,25 @@ def write(
     definition, said = prepared(
         what, polars=polars if row.polars else "keep", reynolds=reynolds, progress=progress
     )
-    said = said if row.polars else ()
-    if definition.structure is not None and not (row.structure or row.tolerance is None):
-        said += (Finding("structure", f"has no place in {row.title}; left out"),)
+    said = (said if row.polars else ()) + _left_out(definition, row, polars)
     mark = mark if row in FORMATS else unmarked  # those of plug-ins stay as they are
     if row.tolerance is None:
         return said + marked(partial(row.write, definition), path, mark)
     return said + proven(partial(row.write, definition), path, definition, row.tolerance, mark)
+
+
+def _left_out(definition: BladeDefinition, row: Writer, polars: str | None) -> tuple[Finding, ...]:
+    """Return a finding for each part of a definition that a format has no place for."""
+    if row.tolerance is None:  # holds no blade, and nobody expects it to
+        return ()
+    asked = polars not in (None, "keep", "none")
+    some = any(station.airfoil.polars for station in definition.stations)
+    lost = (
+        ("structure", "has", definition.structure is not None and not row.structure),
+        ("polars", "have", (some or asked) and not row.polars),
+    )
+    said = f"no place in {row.title}; left out"
+    return tuple(Finding(part, f"{verb} {said}") for part, verb, gone in lost if gone)
 
 
 def prepared(

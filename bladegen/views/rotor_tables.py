@@ -1,5 +1,6 @@
 """What a rotor does, as figures by name and as rows of text: a blade beside its baseline."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -12,6 +13,7 @@ __all__ = [
     "conditions_rows",
     "curve_rows",
     "figure_rows",
+    "notes_on",
     "rotor_curve",
     "rotor_figures",
 ]
@@ -23,12 +25,16 @@ SHOWN = {  # how a figure is called, and how many decimals it has
     "thrust_coefficient": ("thrust coefficient there", 4),
     "root_moment_coefficient": ("root moment coefficient there", 4),
     "rated_wind_m_s": ("rated wind speed, m/s", 2),
+    "tip_speed_wind_m_s": ("wind at the largest tip speed, m/s", 2),  # if no power is rated
     "root_moment_MNm": ("root moment there, MNm", 2),
     "annual_energy_GWh": ("annual energy, GWh", 2),
     "capacity_factor": ("capacity factor", 4),
     "tip_radius_m": ("tip radius, m", 2),
+    "mass_t": ("mass of all layers, t", 3),
     "least_confidence": ("NeuralFoil's least confidence", 2),
 }
+IF_KNOWN = "rated_wind_m_s", "tip_speed_wind_m_s", "mass_t"  # rows that not every blade has
+SPECIFIC_POWER = 50.0, 1000.0  # W/m2 of the disc; turbines in service have 150 to 600
 WORKING = {  # how a condition is called, and the factor to what is shown
     "tip_speed": ("largest tip speed, m/s", 1.0),
     "rated_power": ("rated power, MW", 1e-6),
@@ -41,8 +47,13 @@ WORKING = {  # how a condition is called, and the factor to what is shown
 }
 
 
-def rotor_figures(found: Evaluation, row: int) -> dict[str, float | None]:
-    """Return the figures of a rotor, units in their names; None for what is not known."""
+def rotor_figures(
+    found: Evaluation, row: int, mass: float | None = None
+) -> dict[str, float | None]:
+    """Return the figures of a rotor, units in their names; None for what is not known.
+
+    `mass` is that of a blade's layers [kg].
+    """
     best, rated = found.performance, found.conditions.rated_power
     power, thrust, moment = best.best[row]
     energy = float(found.energy[row])
@@ -52,11 +63,13 @@ def rotor_figures(found: Evaluation, row: int) -> dict[str, float | None]:
         "pitch_deg": np.degrees(best.pitch[row]),
         "thrust_coefficient": thrust,
         "root_moment_coefficient": moment,
-        "rated_wind_m_s": found.rated_wind[row],
+        "rated_wind_m_s": np.nan if rated is None else found.rated_wind[row],
+        "tip_speed_wind_m_s": found.rated_wind[row] if rated is None else np.nan,
         "root_moment_MNm": found.root_moment[row] / 1e6,
         "annual_energy_GWh": gigawatt_hours(found.energy)[row],
         "capacity_factor": np.nan if rated is None else energy / (rated * 3600.0 * HOURS),
         "tip_radius_m": found.elements.tip_radius[row],
+        "mass_t": np.nan if mass is None else mass / 1e3,
         "least_confidence": sure(found)[row],
     }
     return {name: float(v) if np.isfinite(v) else None for name, v in figures.items()}
@@ -82,17 +95,43 @@ def conditions_rows(found: Evaluation) -> list[list[str]]:
     ]
 
 
-def figure_rows(found: Evaluation) -> list[list[str]]:
-    """Return a row a figure: its name, the baseline's, then the variant's and the change."""
-    columns = [rotor_figures(found, row) for row in range(len(found.energy))]
+def figure_rows(found: Evaluation, masses: Sequence[float | None]) -> list[list[str]]:
+    """Return a row a figure: its name, the baseline's, then the variant's and the change.
+
+    `masses` are those of the blades' layers [kg], None where a blade has none.
+    """
+    columns = [rotor_figures(found, row, mass) for row, mass in enumerate(masses)]
+    absent = {name for name in IF_KNOWN if all(column[name] is None for column in columns)}
+    if found.conditions.rated_power is not None:
+        absent.discard("rated_wind_m_s")
     rows = []
     for name, (said, decimals) in SHOWN.items():
+        if name in absent:
+            continue
         values = [column[name] for column in columns]
         row = [said, *("-" if v is None else digits(v, decimals) for v in values)]
         if len(values) > 1:
             row.append(_change(values[0], values[1], name))
         rows.append(row)
     return rows
+
+
+def notes_on(found: Evaluation) -> list[str]:
+    """Return what is to be said of a rated power: that there is none, or that it looks odd."""
+    rated, last = found.conditions.rated_power, found.conditions.cut_out
+    if rated is None:
+        return ["no rated power is known, so no annual energy; give one in MW: --rated-power 10"]
+    radius = float(found.elements.tip_radius[0])
+    specific = rated / (np.pi * radius**2)
+    said = []
+    if not SPECIFIC_POWER[0] <= specific <= SPECIFIC_POWER[1]:
+        said.append(
+            f"rated power: {rated:.4g} W on a rotor of {2.0 * radius:.4g} m are {specific:.3g} "
+            "W/m2, turbines have 150 to 600: --rated-power is in MW, windIO's rated_power in W"
+        )
+    if np.isnan(found.rated_wind).any():
+        said.append(f"rated power: is not reached up to the cut-out of {last:g} m/s")
+    return said
 
 
 def _change(before: float | None, after: float | None, name: str) -> str:

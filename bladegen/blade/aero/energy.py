@@ -28,6 +28,16 @@ UNITS = {
     "cut_in": "m_s",
     "cut_out": "m_s",
 }
+MOST = {  # beyond which a figure has a slip in it, such as watts for megawatts
+    "tip_speed": 340.0,
+    "rated_power": 1e9,
+    "mean_wind": 50.0,
+    "weibull_shape": 20.0,
+    "air_density": 10.0,
+    "cut_in": 100.0,
+    "cut_out": 100.0,
+    "efficiency": 1.0,
+}
 WIND_STEP = 0.25  # m/s, of power curves
 
 
@@ -69,12 +79,12 @@ class Conditions:
                 continue
             if not amount(value, entry.name, BladegenError) > 0.0:
                 raise BladegenError(f"{entry.name}: got {value:g}, must be positive")
+            if value > MOST[entry.name]:
+                raise BladegenError(_too_large(entry.name, value))
         if self.cut_out <= self.cut_in:
             raise BladegenError(
                 f"cut_out: got {self.cut_out:g} m/s, must be above cut_in, {self.cut_in:g} m/s"
             )
-        if self.efficiency > 1.0:
-            raise BladegenError(f"efficiency: got {self.efficiency:g}, allowed is up to 1")
 
     @classmethod
     def of(cls, rotor: Rotor, tip_radius: float, **given: float | None) -> "Conditions":
@@ -107,6 +117,17 @@ class Conditions:
         """Wind speeds from cut-in to cut-out (m,), about `WIND_STEP` apart."""
         count = max(2, round((self.cut_out - self.cut_in) / WIND_STEP) + 1)
         return np.linspace(self.cut_in, self.cut_out, count)
+
+
+def _too_large(name: str, value: float) -> str:
+    """Return what is wrong with a condition that is larger than any rotor's."""
+    if name == "rated_power":
+        return (
+            f"rated_power: got {value / 1e6:g} MW, allowed is up to {MOST[name] / 1e6:g} MW; "
+            "--rated-power is in MW, such as 15, Conditions and files have it in W"
+        )
+    unit = {"m_s": " m/s", "kg_m3": " kg/m3"}.get(UNITS.get(name, ""), "")
+    return f"{name}: got {value:g}{unit}, allowed is up to {MOST[name]:g}{unit}"
 
 
 def weibull_shares(winds: Array, mean: float, shape: float) -> Array:

@@ -74,7 +74,7 @@ def evaluate(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Evaluate a blade: power, thrust, root moment and annual energy.
+    """Evaluate a blade: power, thrust, root moment, annual energy and mass.
 
     A changed blade stands beside its baseline. Polars are of its own sections, by NeuralFoil (the
     extra aero); the rotor is rigid, in steady uniform wind, by blade-element momentum theory.
@@ -106,6 +106,8 @@ def evaluate(
             hub_radius=None if hub is None else metres(hub, "hub-radius", example="2m"),
             network=working.network,
         )
+        progress("weighing")
+        masses = [None if made.layup is None else made.layup.mass for made in blades]
     names = [made.name for made in blades]
     if plot is not None:
         from bladegen.exports.marks import marked
@@ -121,7 +123,7 @@ def evaluate(
             "wind_m_s": found.conditions.winds.tolist(),
             "blades": [
                 {"name": name, "baseline": changes.asked and row == 0}
-                | tables.rotor_figures(found, row)
+                | tables.rotor_figures(found, row, masses[row])
                 | {"curve": tables.rotor_curve(found, row)}
                 | {"power_W": found.power[row].tolist()}
                 for row, name in enumerate(names)
@@ -131,13 +133,13 @@ def evaluate(
         return
     print_table(["conditions", ""], tables.conditions_rows(found))
     if len(blades) > 1:
-        print_table(["figure", *names, "change"], tables.figure_rows(found))
+        print_table(["figure", *names, "change"], tables.figure_rows(found, masses))
         columns = [f"{what}, {of}" for of in ("baseline", "variant") for what in ("Cp", "Ct")]
     else:
-        print_table(["figure", *names], tables.figure_rows(found))
+        print_table(["figure", *names], tables.figure_rows(found, masses))
         columns = ["Cp", "Ct"]
     print_table(["tip speed ratio", *columns], tables.curve_rows(found), title="at that pitch")
-    if found.conditions.rated_power is None:
-        typer.echo("note: no rated power is known, so no annual energy; give one: --rated-power 10")
+    for said in tables.notes_on(found):
+        typer.echo(f"note: {said}")
     if plot is not None:
         typer.echo(f"wrote {plot}")

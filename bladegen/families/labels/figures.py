@@ -32,7 +32,11 @@ ROTOR = (
     Figure("rotor_optimum_pitch", "pitch of the largest power coefficient", "degree"),
     Figure("rotor_thrust_coefficient", "thrust coefficient at that optimum", ONE),
     Figure("rotor_moment_coefficient", "root bending moment coefficient at that optimum", ONE),
-    Figure("rotor_rated_wind", "wind speed at which the rated power is reached", "m s-1"),
+    Figure(
+        "rotor_rated_wind",
+        "wind speed of the rated power, else of the largest tip speed",
+        "m s-1",
+    ),
     Figure("rotor_root_moment", "root bending moment of one blade in that wind", "N m"),
     Figure("rotor_annual_energy", "energy of a year in the stated Weibull wind", "GW h"),
     Figure("rotor_least_confidence", "NeuralFoil's least confidence between stalls", ONE),

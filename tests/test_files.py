@@ -67,7 +67,9 @@ def test_new_files_have_ordinary_permissions(tmp_path):
 
 def test_a_missing_folder_is_said_in_one_line(tmp_path):
     nowhere = replacing(tmp_path / "nowhere" / "a.stl")
-    with pytest.raises(ExportError, match="cannot be written: No such file"):
+    with pytest.raises(
+        ExportError, match=r"cannot be written: there is no folder .*nowhere; mkdir -p .*nowhere$"
+    ):
         nowhere.__enter__()
 
 

@@ -60,6 +60,13 @@ CHANGES = {
         },
         ": are these metres?",
     ),
+    "a round root off the pitch axis": (
+        lambda d: {
+            "section_offset_y": None,
+            "pitch_axis": Distribution(np.array([0.0, 1.0]), np.array([0.25, 0.25])),
+        },
+        "pitch axis: 25 % of the chord at the round root puts its centre 1.3 m off the pitch axis",
+    ),
     "chord": (
         lambda d: {"chord": scaled(d.chord, 10.0)},
         "chord: reaches 57.6 m on a blade of 117 m, 49 %",

@@ -762,6 +762,11 @@ BAD_FILES: list[tuple[str, bytes, str]] = [
     ("version 1 only", b"windIO_version: '1.0'\ncomponents: {}", "components.blade: is missing"),
     ("garbage", bytes(range(256)), "is no YAML"),
     ("latin-1", "name: Böe".encode("latin-1"), "is no YAML"),
+    (
+        "a tab",
+        b"a:\n\tb: 3",
+        "that cannot start any token (line 2, column 1): a tab indents it, YAML takes blanks",
+    ),
     ("a syntax error", b"a: [1, 2\nb: 3", "is no YAML: did not find expected ',' or ']'"),
     ("its line", b"a: [1, 2\nb: 3", "(line 2, column 2)"),
     ("a tab", b"a:\n\t- 1", "cannot start any token (line 2, column 1)"),
@@ -840,6 +845,14 @@ def test_what_lies_behind_something_missing_is_not_asked_for_again():
     assert node.number(Range(0, 1)) is node.numbers(Range(0, 1)) is node.text() is None
     assert node.members() == []
     assert notes.problems == ["b: is missing, must be given"]
+
+
+def test_a_name_like_the_one_that_is_missing_is_named():
+    notes = Notes()
+    _ = Node({"referense_axis": 1, "chord": 2}, "blade", notes)["reference_axis"]
+    assert notes.problems == [
+        "blade.reference_axis: is missing, must be given; 'referense_axis' stands there"
+    ]
 
 
 # ---- whatever a file holds, the answer is a definition or a BladegenError ---------------------

@@ -147,6 +147,39 @@ def test_every_problem_is_named_with_its_place(tmp_path, old, new, said):
         bg.read(path)
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        (
+            "2,3,3,9,0,30,circle",
+            "row 3: has 7 cells, the names above are 6: is there a decimal comma",
+        ),
+        ("2,3.3,9,0,30,circle", None),
+        ("2,3.3,9,0,30,circle,,", None),
+    ],
+)
+def test_a_decimal_comma_among_commas_is_asked_about(tmp_path, line, said):
+    names = "r [m],chord [m],twist [deg],prebend [m],t/c [%],airfoil"
+    path = table(tmp_path, f"{names}\n0,2,14,0,100,circle\n{line}\n20,1,0,0,18,naca\n")
+    if said is None:
+        assert bg.read(path).chord.values[1] == 3.3
+    else:
+        assert said in problems(path)
+
+
+def test_fractions_that_are_per_cents_are_asked_about(tmp_path):
+    names = "r [m],chord [m],twist [deg],t/c,airfoil"
+    told = "are these per cent? name the column 't/c [%]'"
+    path = table(tmp_path, f"{names}\n0,2,14,100,circle\n20,1,0,18,naca\n")
+    assert problems(path).count(told) == 1
+    path = table(tmp_path, f"{names}\n0,2,14,1,circle\n20,1,0,1800,naca\n")
+    assert told not in problems(path)
+    path = table(
+        tmp_path, f"{names.replace('t/c', 't/c [%]')}\n0,2,14,100,circle\n20,1,0,18,naca\n"
+    )
+    assert_allclose(bg.read(path).relative_thickness.values, [1.0, 0.18])
+
+
 def test_findings_tell_of_units_and_signs_that_look_odd(tmp_path):
     text = (
         TABLE.replace(",12,", ",-12,")
@@ -184,6 +217,19 @@ def test_offsets_in_metres_win_over_a_pitch_axis(tmp_path):
 def test_facts_on_the_rotor_are_checked(tmp_path):
     path = table(tmp_path, "# hub_radius_m: far\n" + TABLE)
     assert "hub_radius_m: got 'far', allowed is 0 to 500 m" in problems(path)
+
+
+def test_a_file_beside_those_of_an_index_is_an_airfoil_too(tmp_path):
+    path = tmp_path / "blade.csv"
+    bg.write(bg.read("nrel5mw"), path)
+    folder = tmp_path / "blade_csv_airfoils"
+    np.savetxt(folder / "mine.dat", naca(0.2, 0.02, 0.0), header="mine", comments="")
+    path.write_text(path.read_text().replace("NACA64_A17", "mine"))
+    made = bg.read(path)
+    assert made.stations[-1].airfoil.name == "mine"
+    assert np.ptp(made.stations[-1].airfoil.coordinates[:, 1]) == pytest.approx(0.2, abs=0.01)
+    path.write_text(path.read_text().replace("mine", "yours"))
+    assert problems(path).startswith("airfoil 'yours': blade_csv_airfoils holds mine, Cylinder")
 
 
 def test_airfoil_folders_tell_what_is_wrong(tmp_path):

@@ -26,7 +26,7 @@ SLIPS = {
     "info zzz": "bundled blades are dtu10mw, iea15mw, nrel5mw",
     "check IEA15MW": "did you mean iea15mw",
     "check folder": "is a folder, must be a file",
-    "info iea15mw --airfoils nowhere": "nowhere: is no folder, must be one of airfoil files",
+    "info iea15mw --airfoils nowhere": "nowhere: is no folder, must be one with airfoil files",
     "perturb iea15mw -o o": "nothing is to change; give --pga",
     "perturb iea15mw -o o --space bundled --pga 0,0,0,0": "in the shell that without --space",
     "check nowhere.step": "nowhere.step",
@@ -40,6 +40,13 @@ SLIPS = {
     "perturb iea15mw -o o --twist 1 --space folder": "folder: is no regular file",
     "convert iea15mw o.yaml --into folder": "folder: is a folder, must be the file of a model",
     "convert iea15mw o.yaml --into notes": "notes: has no suffix, must be the file of a model",
+    "check nowhere.stl": "nowhere.stl: is no file",
+    "check solids/blad.stp": "solids/blad.stp: is no file; did you mean solids/blade.step?",
+    "info iea15mw --airfoils folders": "folders: is no folder, must be one with airfoil files; "
+    "did you mean folder?",
+    "perturb iea15mw -o o --twist 1 --space solids/spce.npz": "did you mean solids/space.npz?",
+    "convert iea15mw nowhere/o.yaml": "there is no folder nowhere; mkdir -p nowhere",
+    "convert iea15mw nowhere/o.dat": "there is no folder nowhere; mkdir -p nowhere",
     # formats
     "build iea15mw -o o --format stepp": "did you mean step?",
     "build iea15mw -o o --format step,stlx": "format: got 'stlx'",
@@ -121,7 +128,12 @@ USAGE = {
     "build iea15mw -o o --landmarks 401.5": "--landmarks",
     "perturb iea15mw -o o --twist 2deg": "'--twist': got '2deg', must be a number with a decimal",
     "perturb iea15mw -o o --twist=0,1rad": "such as 5.72958",
-    "perturb iea15mw -o o --thickness 1,05": "with a decimal point, without a unit; such as 1.05",
+    "perturb iea15mw -o o --thickness 1,05": "a decimal point, 1 for no change; such as 1.05",
+    "perturb iea15mw -o o --chord 5%": "got '5%', must be a factor with a decimal point, 1 for no "
+    "change; such as 1.05",
+    "perturb iea15mw -o o --thickness=-5%": "such as 0.95",
+    "perturb iea15mw -o o --camber 105%": "such as 1.05",
+    "evaluate iea15mw --efficiency 95%": "without a unit; such as 0.95",
     "perturb iea15mw -o o --thickness 110%": "such as 1.1",
     "perturb iea15mw -o o --pga 0.1 0 0 0": "commas between, without blanks, such as 0.1,0,0,0",
     "family iea15mw -o o --count 1e3": "'--count': got '1e3', must be a whole number, in digits "
@@ -155,8 +167,11 @@ TABLES = {
 def typed(tmp_path, monkeypatch):
     """Type a command in a folder with some files; every blade is one that is made already."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "folder").mkdir()
-    for name in ("blade.yaml", "notes.txt", "folder/myblade.yaml"):
+    for name in ("folder", "solids"):
+        (tmp_path / name).mkdir()
+    for name in (
+        "blade.yaml", "notes.txt", "folder/myblade.yaml", "solids/blade.step", "solids/space.npz"
+    ):  # fmt: skip
         (tmp_path / name).write_text("a: 1\n")
 
     for name, text in TABLES.items():

@@ -48,7 +48,9 @@ def quietly() -> Iterator[None]:
 def save(path: Path, content: io.BytesIO) -> None:
     """Write what OCCT made in memory: it does not notice a full disk, Python does."""
     if not path.parent.is_dir():
-        raise CadError(f"{path}: could not write: there is no folder {path.parent}")
+        raise CadError(
+            f"{path}: could not write: there is no folder {path.parent}; mkdir -p {path.parent}"
+        )
     path.write_bytes(content.getbuffer())
 
 

@@ -24,6 +24,8 @@ TURNED = np.radians(3.0)  # by which an outer part may be turned more than an in
 BENT_DOWNWIND = 0.002  # of the length
 SWEPT_FORWARD = 0.01  # of the length
 AXIS = (0.15, 0.7)  # of the chord; published are 0.24 to 0.53
+ROUND = 0.98  # of the chord: a root so thick is a cylinder
+CENTRE = 0.05  # of the chord, by which a cylinder may stand off the axis it is turned about
 SPANS = np.linspace(0.02, 0.9, 89)  # tips may have any axis
 SLENDER = (0.01, 0.3)  # largest chord over length; published are 0.05 to 0.08
 THICKER = 0.02  # of chord; by which blades may grow thicker outboard
@@ -119,6 +121,22 @@ def _axis(definition: BladeDefinition) -> Iterator[str]:
     )
 
 
+def _root(definition: BladeDefinition) -> Iterator[str]:
+    foil, start = definition.stations[0].airfoil.coordinates, np.zeros(1)
+    if np.ptp(foil[:, 1]) < ROUND * np.ptp(foil[:, 0]):
+        return
+    chord = float(_at(definition.chord, start)[0])
+    given, fraction = definition.section_offset_y, definition.pitch_axis
+    place = _at(given, start)[0] / chord if given is not None else _at(fraction, start)[0]
+    place = float(place) - float(_at(definition.axis.y, start)[0]) / chord
+    if abs(place - 0.5) > CENTRE:
+        yield (
+            f"{100.0 * place:.0f} % of the chord at the round root puts its centre "
+            f"{abs(place - 0.5) * chord:.2g} m off the pitch axis; a root that turns about its "
+            "centre has 50 % there"
+        )
+
+
 def _chord(definition: BladeDefinition) -> Iterator[str]:
     largest = float(definition.chord.values.max())
     length = _rise(definition.axis.z)
@@ -176,6 +194,7 @@ _LOOKS: tuple[tuple[str, Callable[[BladeDefinition], Iterator[str]]], ...] = (
     ("prebend", _prebend),
     ("sweep", _sweep),
     ("offset along the chord", _axis),
+    ("pitch axis", _root),
     ("chord", _chord),
     ("relative thickness", _thickness),
     ("cone", _cone),

@@ -20,6 +20,7 @@ from bladegen.definition.thickness import ruled
 from bladegen.errors import BladegenError, ExportError, FileError, Finding
 from bladegen.formats.reading import read
 from bladegen.support.arrays import Array
+from bladegen.support.files import unwritable
 
 __all__ = [
     "Marking",
@@ -138,7 +139,7 @@ def taken_back(path: Path) -> Iterator[None]:
     try:
         kept = Path(tempfile.mkdtemp(prefix=f".{path.stem}.", dir=home))
     except OSError as error:
-        raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
+        raise unwritable(path, error) from None
     try:
         for entry in there():
             _copied(entry, kept / entry.name, shutil.copy2)
@@ -223,7 +224,7 @@ def put_in_place(path: Path) -> Iterator[Path]:
     try:
         outer = Path(tempfile.mkdtemp(prefix=f".{path.stem}.", dir=home))
     except OSError as error:
-        raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
+        raise unwritable(path, error) from None
     stage = outer / (home.resolve().name or "stage")  # models tell their folders by name
     try:
         stage.mkdir()
@@ -235,7 +236,7 @@ def put_in_place(path: Path) -> Iterator[Path]:
     except ExportError as error:
         raise ExportError(str(error).replace(f"{stage}{os.sep}", f"{home / '_'}"[:-1])) from None
     except OSError as error:
-        raise ExportError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise unwritable(path, error) from None
     finally:
         shutil.rmtree(outer, ignore_errors=True)
 

@@ -13,6 +13,7 @@ from bladegen.formats.common.document import Notes
 from bladegen.formats.format import Reader
 from bladegen.formats.registry import FORMATS, every, plugins
 from bladegen.support.arguments import path_of, shown, suggestion
+from bladegen.support.files import beside
 from bladegen.support.recent import Recent
 
 __all__ = ["SUFFIXES", "holds_blade", "is_read", "read"]
@@ -50,7 +51,8 @@ def read(source: str | Path, *, airfoils: str | Path | None = None) -> BladeDefi
     if airfoils is not None:
         airfoils = path_of(airfoils, "airfoils", DefinitionError)
         if not airfoils.is_dir():
-            raise FileError(str(airfoils), ["is no folder, must be one of airfoil files"])
+            near = beside(airfoils, folders=True)
+            raise FileError(str(airfoils), [f"is no folder, must be one with airfoil files{near}"])
     path = _path(source)
     if airfoils is not None or path.parent != home():
         return _read(source, path, airfoils)
@@ -98,7 +100,7 @@ def _path(source: str | Path) -> Path:
         raise FileError(str(source), [f"is a folder, must be a file{_inside(path)}"])
     if not is_file:
         kind = "is no regular file" if exists else "is neither a bundled blade nor a file"
-        near = suggestion(source, names) or suggestion(path.stem, names) or _beside(path)
+        near = suggestion(source, names) or suggestion(path.stem, names) or beside(path, SUFFIXES)
         raise FileError(str(source), [f"{kind}; bundled blades are {', '.join(names)}{near}"])
     if not is_read(path):
         allowed = ", ".join(
@@ -109,11 +111,6 @@ def _path(source: str | Path) -> Path:
             [f"has the suffix {path.suffix!r}, allowed are {allowed}{plugins().remark}"],
         )
     return path
-
-
-def _beside(path: Path) -> str:
-    """Return which file beside a path that is none may be meant."""
-    return suggestion(path.name, _blades(path.parent), lambda name: str(path.with_name(name)))
 
 
 def _inside(path: Path) -> str:

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import FileError
+from bladegen.support.files import beside
 
 __all__ = ["MESHES", "SOLIDS", "Answer", "ask", "kind_of"]
 
@@ -68,7 +69,7 @@ def kind_of(path: Path) -> str:
         allowed = ", ".join(SOLIDS + MESHES)
         raise FileError(str(path), [f"suffix {suffix!r}, allowed are {allowed}"])
     if not path.is_file():
-        raise FileError(str(path), ["is no file"])
+        raise FileError(str(path), [f"is no file{beside(path, SOLIDS + MESHES)}"])
     size = path.stat().st_size
     if size > LARGEST:
         raise FileError(str(path), [f"has {size} bytes, allowed are {LARGEST}"])

@@ -21,7 +21,7 @@ from bladegen.shapes.saved_spaces import ORTHONORMAL, problem_of, read_space
 from bladegen.support.archive import save_arrays
 from bladegen.support.arguments import instance, numbers, one_of, path_of, whole
 from bladegen.support.arrays import Array, readonly
-from bladegen.support.files import require_suffix
+from bladegen.support.files import beside, require_suffix
 from bladegen.support.services import shown_by
 from bladegen.support.values import equal, hashed
 
@@ -145,8 +145,8 @@ class ShapeSpace:
             return cls.bundled(str(path))
         if not place.exists():
             raise SpaceError(
-                f"{path}: is no file; bundled spaces are {', '.join(FILES)}; the paper's is "
-                "ShapeSpace.bundled(), in the shell that without --space"
+                f"{path}: is no file; bundled spaces are {', '.join(FILES)}; the paper's is Shape"
+                f"Space.bundled(), in the shell that without --space{beside(place, ('.npz',))}"
             )
         arrays, about = read_space(place, ARRAYS)
         problem = problem_of(arrays)

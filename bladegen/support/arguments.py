@@ -17,6 +17,7 @@ from bladegen.errors import BladegenError
 from bladegen.support.arrays import Array
 
 __all__ = [
+    "alike",
     "amount",
     "function",
     "instance",
@@ -137,9 +138,15 @@ def suggestion(word: object, known: Iterable[str], wrapped: Callable[[str], str]
     >>> suggestion("IEA15MW", ["iea15mw", "nrel5mw"])
     '; did you mean iea15mw?'
     """
+    near = alike(str(word), known)
+    return "" if near is None else f"; did you mean {wrapped(near)}?"
+
+
+def alike(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that is most like another one; None if none is."""
     plain = {_plain(name): name for name in known}
-    near = get_close_matches(_plain(str(word)), plain, 1, ALIKE)
-    return f"; did you mean {wrapped(plain[near[0]])}?" if near else ""
+    near = get_close_matches(_plain(word), plain, 1, ALIKE)
+    return plain[near[0]] if near else None
 
 
 def _plain(name: str) -> str:

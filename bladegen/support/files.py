@@ -16,11 +16,13 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from bladegen.errors import ExportError, FileError
+from bladegen.support.arguments import suggestion
 from bladegen.support.stopping import held_back
 
 __all__ = [
     "alone",
     "beginning_of",
+    "beside",
     "content_of",
     "digest_of",
     "end_of",
@@ -28,11 +30,34 @@ __all__ = [
     "replacing",
     "require_suffix",
     "safe_stem",
+    "unwritable",
 ]
 
+MANY = 1000  # entries of a folder among which one of a like name is looked for
 RETRY = 0.2  # seconds in which a lock whose file was taken away is made anew
 
 logger = logging.getLogger(__name__)
+
+
+def beside(path: Path, suffixes: Sequence[str] = (), *, folders: bool = False) -> str:
+    """Return which entry beside a path that is none may be meant, to end a message with.
+
+    Files of some suffixes, lower case, or folders; "" if none has a like name.
+    """
+    try:
+        found = sorted(path.parent.iterdir())[:MANY]
+        meant = [e for e in found if (e.is_dir() if folders else e.suffix.lower() in suffixes)]
+    except (OSError, ValueError):  # no folder, or a name that none can have
+        return ""
+    return suggestion(path.name, [e.name for e in meant], lambda name: str(path.with_name(name)))
+
+
+def unwritable(path: Path, error: OSError) -> ExportError:
+    """Return what to raise if a file cannot be written: a folder that is missing is named."""
+    said = f"cannot be written: {error.strerror or error}"
+    if isinstance(error, FileNotFoundError) and not path.parent.exists():
+        said = f"cannot be written: there is no folder {path.parent}; mkdir -p {path.parent}"
+    return ExportError(f"{path}: {said}")
 
 
 @contextmanager
@@ -52,7 +77,7 @@ def replacing(path: Path) -> Iterator[Path]:
         )
         os.close(handle)
     except OSError as error:
-        raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
+        raise unwritable(path, error) from None
     temporary = Path(name)
     try:
         yield temporary
@@ -60,7 +85,7 @@ def replacing(path: Path) -> Iterator[Path]:
         temporary.replace(path)
         logger.info("wrote %s, %d bytes", path, path.stat().st_size)
     except OSError as error:
-        raise ExportError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise unwritable(path, error) from None
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -89,7 +114,7 @@ def alone(path: Path, stem: str) -> Iterator[None]:
                 raise ExportError(f"{path}: another run is writing {stem} there") from None
             except OSError as error:
                 if error.errno != errno.ENOLCK:  # a file system without locks
-                    raise ExportError(f"{path}: cannot be written: {error.strerror}") from None
+                    raise unwritable(path, error) from None
             ours = True
         yield
     finally:

@@ -31,17 +31,28 @@ class Changes:
     space: Annotated[
         Path | None, typer.Option(help="A space made by `space build`; the bundled one if not.")
     ] = None
-    thickness: Annotated[float, typer.Option(help="Thickness times this; 1 changes nothing.")] = 1
+    thickness: Annotated[
+        float, typer.Option(help="Thickness times this, chord as it is; 1 for no change.")
+    ] = 1
     camber: Annotated[
-        float, typer.Option(help="diag(2 - s, s), chord against thickness; 1 changes nothing.")
+        float,
+        typer.Option(
+            help="The paper's: thickness and camber in metres times s, chord times 2 - s (1.05: "
+            "+5 % and -5 %); 1 for no change."
+        ),
     ] = 1
     chord: Annotated[
-        float, typer.Option(help="Chord times this at the same thickness in metres; 1 is none.")
+        float, typer.Option(help="Chord times this, thickness in metres as it is; 1 for no change.")
     ] = 1
-    twist: Annotated[float, typer.Option(help="Added to the twist, in deg; 0 changes nothing.")] = 0
-    chord_scale: Annotated[float, typer.Option(help="Sections times this; 1 is none.")] = 1
-    twist_scale: Annotated[float, typer.Option(help="Twist times this; 1 is none.")] = 1
-    prebend_scale: Annotated[float, typer.Option(help="Prebend times this; 1 is none.")] = 1
+    twist: Annotated[
+        float,
+        typer.Option(help="Degrees added to the twist, leading edge upwind; 0 for no change."),
+    ] = 0
+    chord_scale: Annotated[
+        float, typer.Option(help="Chord and thickness times this, root included; 1 for no change.")
+    ] = 1
+    twist_scale: Annotated[float, typer.Option(help="Twist times this; 1 for no change.")] = 1
+    prebend_scale: Annotated[float, typer.Option(help="Prebend times this; 1 for no change.")] = 1
     window: Annotated[
         str | None,
         typer.Option(

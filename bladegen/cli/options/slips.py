@@ -19,6 +19,15 @@ UsageError: Any = BadParameter.__bases__[0]  # of the click that typer uses, its
 _NUMBER = re.compile(r"([-+]?[0-9]*[.,]?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*(%|deg|°|rad)?")
 _THOUSANDS = re.compile(r"[-+]?[0-9]{1,3}(?:[,.' _][0-9]{3})+")
 _UNITS = ("um", "mm", "cm", "m", "deg", "rad", "%")
+FACTORS = (
+    "--thickness",
+    "--camber",
+    "--chord",
+    "--chord-scale",
+    "--twist-scale",
+    "--prebend-scale",
+)
+CHANGE = 50.0  # per cent; from there on a factor is meant: 105 %
 _MOST = 1e9  # of whole numbers that are offered
 
 
@@ -34,7 +43,8 @@ class Answering(typer.core.TyperCommand):
             said = error.message
             if error.param is not None and re.search(r"valid (int|integer|number|float)\b", said):
                 value = _typed(error.param.opts, typed)
-                error.message = instead_of(value, whole="valid int" in said)
+                factor = any(flag in FACTORS for flag in error.param.opts)
+                error.message = instead_of(value, whole="valid int" in said, factor=factor)
             raise
         except UsageError as error:
             if error.message.startswith("Got unexpected extra argument"):
@@ -53,21 +63,27 @@ def _typed(flags: Sequence[str], words: Sequence[str]) -> str:
     return found
 
 
-def instead_of(typed: str, *, whole: bool) -> str:
+def instead_of(typed: str, *, whole: bool, factor: bool = False) -> str:
     """Return what is wrong with a text for a number, and the number that may be meant.
+
+    Per cents are shares, and changes where the number is a `factor` that 1 leaves as it is.
 
     >>> instead_of("1e3", whole=True)
     "got '1e3', must be a whole number, in digits alone; such as 1000"
     >>> instead_of("1,05", whole=False)
     "got '1,05', must be a number with a decimal point, without a unit; such as 1.05"
+    >>> instead_of("-5%", whole=False, factor=True)
+    "got '-5%', must be a factor with a decimal point, 1 for no change; such as 0.95"
     """
     must = "a whole number, in digits alone"
-    if not whole:
+    if factor:
+        must = "a factor with a decimal point, 1 for no change"
+    elif not whole:
         must = "a number with a decimal point, without a unit"
-    return f"got {typed!r}, must be {must}{_such(typed.strip(), whole)}"
+    return f"got {typed!r}, must be {must}{_such(typed.strip(), whole, factor)}"
 
 
-def _such(typed: str, whole: bool) -> str:
+def _such(typed: str, whole: bool, factor: bool) -> str:
     """Return the number that a text may mean, as it is typed, "" if none is near."""
     match = _NUMBER.fullmatch(typed)
     if whole and _THOUSANDS.fullmatch(typed):
@@ -75,7 +91,11 @@ def _such(typed: str, whole: bool) -> str:
     if match is None:
         return ""
     value = float(match[1].replace(",", "."))
-    value = value / 100 if match[2] == "%" else math.degrees(value) if match[2] == "rad" else value
+    if match[2] == "%":
+        change = factor and abs(value) < CHANGE
+        value = (100 + value if change else value) / 100
+    elif match[2] == "rad":
+        value = math.degrees(value)
     if not whole:
         return f"; such as {value:.6g}"
     return f"; such as {value:.0f}" if value == round(value) and abs(value) <= _MOST else ""

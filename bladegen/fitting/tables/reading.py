@@ -9,6 +9,7 @@ import numpy as np
 from bladegen.errors import FileError
 from bladegen.formats.common.column_names import LENGTHS
 from bladegen.support.arrays import Array, Indices
+from bladegen.support.files import beside
 
 __all__ = ["Table", "table_of"]
 
@@ -117,7 +118,7 @@ def table_of(path: Path) -> Table:
         If there is no row of numbers, a value is none, or units differ.
     """
     if not path.is_file():
-        raise FileError(str(path), ["is no file"])
+        raise FileError(str(path), [f"is no file{beside(path, (path.suffix.lower(),))}"])
     size = path.stat().st_size
     if size > LARGEST:
         raise FileError(str(path), [f"has {size} bytes, allowed are {LARGEST}"])

@@ -96,16 +96,24 @@ def holds(folder: Path, name: str) -> bool:
 
 
 def shapes(folder: Path, wanted: Iterable[str], notes: Notes) -> dict[str, Airfoil]:
-    """Read the airfoils of given names from a folder; what is missing is a problem."""
+    """Read the airfoils of given names from a folder; what is missing is a problem.
+
+    Names are those of its index, then those of files that the index does not list.
+    """
+    names = list(dict.fromkeys(wanted))
     entries = {entry.name: entry for entry in _entries(folder, notes)}
+    if not set(names) <= set(entries) and (folder / INDEX).is_file():
+        listed = {entry.path for entry in entries.values()}
+        added = (entry for entry in _by_name(folder, notes) if entry.path not in listed)
+        entries = {entry.name: entry for entry in added} | entries
     known = {_plain(name): entry for name, entry in entries.items()}
     found = {}
-    for name in dict.fromkeys(wanted):
+    for name in names:
         entry = entries.get(name) or known.get(_plain(name)) or known.get(_plain(safe_stem(name)))
         if entry is None:
-            names = ", ".join(list(entries)[:MAX_NAMES]) or "none"
+            there = ", ".join(list(entries)[:MAX_NAMES]) or "none"
             notes.problems.append(
-                f"airfoil {name!r}: {folder.name} holds {names}{_other(name, notes)}"
+                f"airfoil {name!r}: {folder.name} holds {there}{_other(name, notes)}"
             )
             continue
         made = _airfoil(name, entry, notes)

@@ -18,6 +18,7 @@ from bladegen.formats.airfoils.contours import ContourError, contour, joined, si
 from bladegen.formats.airfoils.point_lines import PointLines, numbers_of, point_lines, two_sided
 from bladegen.formats.common.text_file import number, read_lines
 from bladegen.support.arrays import Array
+from bladegen.support.files import beside
 
 __all__ = [
     "SUFFIXES",
@@ -153,7 +154,7 @@ def airfoil_folder(folder: Path) -> AirfoilFolder:
         If there is no such folder.
     """
     if not folder.is_dir():
-        raise FileError(str(folder), ["is no folder"])
+        raise FileError(str(folder), [f"is no folder{beside(folder, folders=True)}"])
     airfoils: dict[str, Array] = {}
     unusable, said = {}, []
     for path in sorted(folder.iterdir()):

@@ -14,6 +14,7 @@ import numpy as np
 
 from bladegen.definition.blade_definition import SMALLEST_RISE, SMALLEST_STEP, Distribution
 from bladegen.errors import Finding
+from bladegen.support.arguments import alike
 from bladegen.support.arrays import Array, ArrayLike, Indices, Mask
 
 __all__ = ["FRACTION", "Node", "Notes", "Range"]
@@ -92,7 +93,9 @@ class Node:
             self.problem(f"got {_shown(self.value)}, must be a mapping")
             return member
         if not self.has(key):
-            member.problem("is missing, must be given")
+            near = alike(key, [name for name in self.value if isinstance(name, str)])
+            meant = f"; {near!r} stands there" if near and near != key else ""
+            member.problem(f"is missing, must be given{meant}")
             return member
         return Node(self.value[key], member.path, self.notes)
 

@@ -23,6 +23,7 @@ __all__ = ["Block", "Cell", "Column", "Rows", "blocks", "values_of"]
 
 Cell = str | float | None
 Rows = list[tuple[int, Sequence[Cell]]]
+SHARES = "of the chord", "(root to tip)"  # units of columns that may be given in per cent
 SHOWN = 5  # wrong cells of one column that are named one by one
 
 
@@ -118,15 +119,26 @@ def values_of(column: Column, notes: Notes) -> Array | None:
         values[i] = math.nan if value is None else column.factor * value
         if not column.allowed.holds(values[i]):
             wrong.append(i)
+    near = _percent(column, values, wrong)
     for i in wrong[:SHOWN]:
         demand = "must be a number," if math.isnan(values[i]) else "allowed is"
         notes.problems.append(
             f"row {column.rows[i]}, {column.title}: got {_shown(column.cells[i])}, {demand} "
-            f"{column.allowed}"
+            f"{column.allowed}{near if i == wrong[0] else ''}"
         )
     if len(wrong) > SHOWN:
         notes.problems.append(f"{column.title}: {len(wrong) - SHOWN} more cells are wrong")
     return None if wrong else values
+
+
+def _percent(column: Column, values: Array, wrong: list[int]) -> str:
+    """Return what to write if a column of fractions holds per cents, to end a message with."""
+    shares = values[np.isfinite(values)] / 100.0
+    if not wrong or column.allowed.unit not in SHARES or not len(shares):
+        return ""
+    if np.isnan(values[wrong]).any() or not all(map(column.allowed.holds, shares)):
+        return ""
+    return f"; are these per cent? name the column '{column.title.split('[')[0].strip()} [%]'"
 
 
 _Header = dict[int, tuple[str, str, float, Range]]

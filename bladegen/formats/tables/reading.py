@@ -116,7 +116,26 @@ def _csv(path: Path, notes: Notes) -> tuple[dict[str, str], Rows]:
         rows.append((k, list(mended)))
     if commas:
         notes.findings.append(Finding("table", "decimal commas are read as points"))
+    _require_no_more(rows, notes)
     return facts, rows
+
+
+def _require_no_more(rows: Rows, notes: Notes) -> None:
+    """Note rows with more cells than the names above them: a cell is divided that should be one."""
+    width, wide = 0, []
+    for k, cells in rows:
+        filled = [place for place, cell in enumerate(cells) if str(cell or "").strip()]
+        if not any(number(str(cell)) is not None for cell in cells):
+            width = max(width, len(cells))  # names, units
+        elif width and filled[-1] >= width:
+            wide.append((k, filled[-1] + 1))
+    if wide:
+        k, count = wide[0]
+        more = f" and {len(wide) - 1} more rows" if wide[1:] else ""
+        notes.problems.append(
+            f"row {k}{more}: has {count} cells, the names above are {width}: is there a decimal "
+            "comma? write decimal points, or divide cells by semicolons"
+        )
 
 
 def _decimal(cell: str) -> str:

@@ -72,7 +72,8 @@ def parse_yaml(content: bytes | str) -> tuple[Any, list[Finding]]:
             builder.take(event)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        raise YamlError(f"is no YAML: {error.problem or error.context}{_place(mark)}") from None
+        said = f"is no YAML: {error.problem or error.context}{_place(mark)}"
+        raise YamlError(f"{said}{_tab(content, mark)}") from None
     except yaml.YAMLError as error:  # bytes that are no text
         raise YamlError("is no YAML: " + " ".join(str(error).split())) from None
     return builder.value, builder.findings
@@ -170,6 +171,14 @@ class _Builder:
 
 def _place(mark: Any) -> str:
     return "" if mark is None else f" (line {mark.line + 1}, column {mark.column + 1})"
+
+
+def _tab(content: Any, mark: Any) -> str:
+    """Say that a line is indented by a tab, if it is the one that could not be read."""
+    lines = (content if isinstance(content, bytes) else content.encode()).splitlines()
+    line = lines[mark.line] if mark is not None and mark.line < len(lines) else b""
+    indent = line[: len(line) - len(line.lstrip())]
+    return ": a tab indents it, YAML takes blanks" if b"\t" in indent else ""
 
 
 def _plain(text: str) -> Any:

@@ -21,7 +21,7 @@ from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distr
 from bladegen.definition.blending import Between, between, completed, of_their_own
 from bladegen.formats.common.document import Notes
 from bladegen.formats.hawc2.polar_reading import profile_sets as read_sets
-from bladegen.formats.into import write_into
+from bladegen.formats.into import with_polars_of, write_into
 from bladegen.formats.openfast.polar_reading import Columns
 from bladegen.formats.openfast.polar_reading import polars as read_tables
 from strategies import few, naca, tenth
@@ -211,6 +211,44 @@ def test_a_format_without_polars_says_that_they_are_left_out(tmp_path, suffix):
     assert said(tenth()) == []
     assert said(tenth(), polars="keep") == said(tenth(), polars="none") == []
     assert said(tenth(), polars="estimate") == [line]
+
+
+@pytest.mark.parametrize("suffix", ["yaml", "dat"])
+@pytest.mark.parametrize("policy", [None, "estimate"])
+def test_a_blade_from_a_table_keeps_the_polars_of_the_model(tmp_path, suffix, policy):
+    blade = with_polars(4e6)
+    model, table = tmp_path / f"model.{suffix}", tmp_path / "table.csv"
+    bg.write(blade, model)
+    main = model
+    if suffix == "dat":
+        main = tmp_path / "main.dat"
+        part = (tmp_path / "model_AeroDyn_part.dat").read_text()
+        main.write_text(f"------- AERODYN INPUT FILE ----\ntitle\n{part}")
+    bg.write(bg.read(model), table)
+    words = [str(word) for word in ("convert", table, tmp_path / f"new.{suffix}", "--into", main)]
+    result = CliRunner().invoke(commands.app, words + ["--polars", str(policy)] * bool(policy))
+    assert result.exit_code == 0, result.output
+    before = {s.airfoil.name: s.airfoil.polars for s in bg.read(model).stations}
+    assert f"{len(before)} airfoils of {main.name} keep theirs" in " ".join(result.output.split())
+    after = bg.read(tmp_path / f"new.{suffix}")
+    assert all(not s.airfoil.polars[0].is_estimate for s in after.stations)
+    assert lift(after, 0.0) == pytest.approx(lift(blade, 0.0))
+    assert lift(after, 1.0) == pytest.approx(lift(blade, 1.0))
+
+
+def test_an_airfoil_of_another_shape_takes_no_polars_of_its_name(tmp_path):
+    blade, model = with_polars(4e6), tmp_path / "model.yaml"
+    bg.write(blade, model)
+    (first, *others) = blade.stations
+    bare = replace(first.airfoil, polars=())
+    moved = replace(bare, coordinates=bare.coordinates * [1.0, 0.9])
+    changed = replace(blade, stations=(Station(0.0, moved), *others))
+    assert with_polars_of(changed, model) == (changed, ())
+    changed = replace(blade, stations=(Station(0.0, bare), *others))
+    found, (said,) = with_polars_of(changed, model)
+    assert str(said) == "polars: 1 airfoil of model.yaml keeps its own"
+    assert found.stations[0].airfoil.polars[0].reynolds == 4e6
+    assert with_polars_of(changed, tmp_path / "none.yaml") == (changed, ())
 
 
 def test_polars_that_go_leave_no_files_behind(tmp_path):

@@ -46,8 +46,9 @@ def convert(
 ) -> None:
     """Convert a blade between file formats, and say what the new one cannot hold."""
     from bladegen.cli.options.parsing import metres
-    from bladegen.errors import ExportError
+    from bladegen.errors import ExportError, Finding
     from bladegen.exports.definitions import write, write_into
+    from bladegen.formats.into import with_polars_of
     from bladegen.formats.reading import read
     from bladegen.formats.writing import format_of, prepared
 
@@ -67,9 +68,12 @@ def convert(
             findings = write(definition, target, format=row.name, command=COMMAND.get(), **ways)
             title = row.title
         else:
+            kept: tuple[Finding, ...] = ()
+            if polars not in ("none", "estimate-all"):
+                definition, kept = with_polars_of(definition, into)
             whole, said = prepared(definition, **ways)
             progress(f"writing {target}")
-            findings = said + write_into(whole, into, target, command=COMMAND.get())
+            findings = kept + said + write_into(whole, into, target, command=COMMAND.get())
             title = f"into {into}"
     print_table(
         ["", "format", "file"],

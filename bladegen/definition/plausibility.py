@@ -127,8 +127,10 @@ def _root(definition: BladeDefinition) -> Iterator[str]:
         return
     chord = float(_at(definition.chord, start)[0])
     given, fraction = definition.section_offset_y, definition.pitch_axis
-    place = _at(given, start)[0] / chord if given is not None else _at(fraction, start)[0]
-    place = float(place) - float(_at(definition.axis.y, start)[0]) / chord
+    place = 0.0 if fraction is None else float(_at(fraction, start)[0])
+    if given is not None:
+        place = float(_at(given, start)[0]) / chord
+    place -= float(_at(definition.axis.y, start)[0]) / chord
     if abs(place - 0.5) > CENTRE:
         yield (
             f"{100.0 * place:.0f} % of the chord at the round root puts its centre "

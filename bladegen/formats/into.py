@@ -1,9 +1,12 @@
 """A blade put back into a full model of a tool, everything else of which stays as it is."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
-from bladegen.definition.blade_definition import BladeDefinition
+import numpy as np
+
+from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Station
 from bladegen.errors import FileError, Finding
 from bladegen.formats.format import Format, PutBack
 from bladegen.formats.proof import (
@@ -14,12 +17,14 @@ from bladegen.formats.proof import (
     taken_back,
     unmarked,
 )
+from bladegen.formats.reading import read
 from bladegen.formats.registry import every
 from bladegen.support.files import content_of, require_suffix
 
-__all__ = ["write_into"]
+__all__ = ["with_polars_of", "write_into"]
 
 YAML = ".yaml"
+SAME = 1e-6  # of the chord: tables and airfoil files hold six digits and more
 LARGEST = 2**28  # bytes; the readers of models have lower bounds of their own
 
 
@@ -78,6 +83,43 @@ def write_into(
         if partly or path.parent.resolve() != turbine.parent.resolve():
             return said  # names lead to files that are elsewhere
         return said + read_back(path, path, definition, way.tolerance)
+
+
+def with_polars_of(
+    definition: BladeDefinition, turbine: Path
+) -> tuple[BladeDefinition, tuple[Finding, ...]]:
+    """Return a blade with the polars that a model has for its airfoils, where it has none itself.
+
+    A blade that went through a table has lost them.  An airfoil is the model's if it has the name
+    and the shape; a model that cannot be read has none, which `write_into` says.
+    """
+    if all(station.airfoil.polars for station in definition.stations):
+        return definition, ()
+    try:
+        known = {s.airfoil.name: s.airfoil for s in read(turbine).stations}
+    except FileError:
+        return definition, ()
+    made: dict[str, Airfoil] = {}
+    for station in definition.stations:
+        own = station.airfoil
+        there = known.get(own.name)
+        if not own.polars and there is not None and there.polars and _alike(own, there):
+            centre = there.aerodynamic_center
+            made[own.name] = replace(own, polars=there.polars, aerodynamic_center=centre)
+    if not made:
+        return definition, ()
+    stations = tuple(
+        Station(s.eta, made.get(s.airfoil.name, s.airfoil)) for s in definition.stations
+    )
+    keep = "airfoils of {} keep theirs" if len(made) > 1 else "airfoil of {} keeps its own"
+    said = Finding("polars", f"{len(made)} {keep.format(turbine.name)}")
+    return replace(definition, stations=stations), (said,)
+
+
+def _alike(one: Airfoil, other: Airfoil) -> bool:
+    """Tell whether two airfoils have the same points."""
+    a, b = one.coordinates, other.coordinates
+    return a.shape == b.shape and bool(np.abs(a - b).max() <= SAME)
 
 
 def _way(suffix: str) -> tuple[Format, PutBack]:

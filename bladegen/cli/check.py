@@ -19,7 +19,7 @@ __all__ = ["blade_of", "check"]
 @grouped
 def check(
     file: Annotated[
-        str, typer.Argument(metavar="FILE", help="A CAD or mesh file, or a blade definition.")
+        str, typer.Argument(metavar="FILE", help="A CAD, mesh or grid file, or a blade definition.")
     ],
     other: Annotated[
         str | None,
@@ -49,7 +49,7 @@ def check(
     as_json: Json = False,
     making: Making = MAKING,
 ) -> None:
-    """Measure a solid, a mesh or a blade definition, or the distance between two of them.
+    """Measure a solid, mesh, grid or blade definition, or the distance between two.
 
     Exit with 1 if a single one is not sound.
     """
@@ -106,10 +106,11 @@ def blade_of(file: str, making: Making = MAKING) -> Any:
     """Return the blade that a name or a definition means, None for other files."""
     from bladegen.formats.bundled import bundled
     from bladegen.formats.reading import is_read
-    from bladegen.measures.foreign import MESHES, SOLIDS
+    from bladegen.measures.foreign import GRIDS, MESHES, SOLIDS
 
     suffix = Path(file).suffix.lower()
-    if file in bundled() or not suffix or (suffix not in SOLIDS + MESHES and is_read(Path(file))):
+    measured = suffix in SOLIDS + MESHES + GRIDS
+    if file in bundled() or not suffix or (not measured and is_read(Path(file))):
         return making.blade(file)
     return None
 

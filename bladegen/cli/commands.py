@@ -30,7 +30,7 @@ SUMMARIES = {
     "perturb": "Perturb a blade consistently and build it.",
     "family": "Make a family of perturbed blades: sections, a manifest, files and a contact sheet.",
     "label": "Add labels to a family: polars, what rotors do, mass of each sound variant.",
-    "check": "Measure a solid, a mesh or a blade definition, or the distance between two of them.",
+    "check": "Measure a solid, mesh, grid or blade definition, or the distance between two.",
     "evaluate": "Evaluate a blade: power, thrust, root moment, annual energy and mass.",
     "fit": "Fit a definition to a surface: axis, chord, twist, offsets, airfoils at few stations.",
     "convert": "Convert a blade between file formats, and say what the new one cannot hold.",

@@ -168,10 +168,14 @@ def _core(content: bytes, made: Provenance) -> bytes:
 
 
 def _vtk(content: bytes, made: Provenance) -> bytes:
-    codes = " ".join(str(code) for code in [*made.text.encode(), 0])
-    said = (
-        f'<Array type="String" Name="{NAME}" NumberOfTuples="1" format="ascii">{codes}</Array>'
-    ).encode()
+    codes = [*made.text.encode(), 0]
+    told = f'<Array type="String" Name="{NAME}" NumberOfTuples="1" format="ascii">', "</Array>"
+    if b"<UnstructuredGrid" in content:  # meshio, which reads these, knows no text
+        told = (
+            f'<DataArray type="UInt8" Name="{NAME}" NumberOfTuples="{len(codes)}" format="ascii">',
+            "</DataArray>",
+        )
+    said = " ".join(map(str, codes)).join(told).encode()
     if b"<FieldData>" in content:  # a second one would hide the first
         return content.replace(b"<FieldData>", b"<FieldData>" + said, 1)
     said = b"<FieldData>" + said + b"</FieldData>"
@@ -209,7 +213,7 @@ def _glb_text(head: bytes) -> str | None:
 
 
 def _vtk_text(head: bytes) -> str | None:
-    found = re.search(rb'<Array type="String" Name="bladegen"[^>]*>([\d\s]*)</Array>', head)
+    found = re.search(rb'Array type="(?:String|UInt8)" Name="bladegen"[^>]*>([\d\s]*)<', head)
     return (
         None if found is None else bytes(int(code) for code in found[1].split()).decode("latin-1")
     )

@@ -41,7 +41,7 @@ class Check:
     source : str
         What was checked.
     kind : str
-        "solid", "mesh" or "blade".
+        "solid", "mesh", "grid" or "blade".
     figures : dict
         Measured figures by name; units stand in the names.
     problems : tuple of str
@@ -55,7 +55,7 @@ class Check:
 
 
 def check_file(path: Path) -> Check:
-    """Measure a CAD or mesh file that anyone made.
+    """Measure a CAD file, a mesh or a structured grid that anyone made.
 
     Raises
     ------
@@ -236,4 +236,5 @@ _NEEDS = {
         ("outward", "does not face outward throughout"),
         ("no_degenerate_triangle", "has degenerate triangles"),
     ),
+    "grid": (("no_folded_cell", "has folded cells"),),
 }

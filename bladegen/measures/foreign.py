@@ -26,8 +26,9 @@ import numpy as np
 from bladegen.errors import FileError
 from bladegen.support.files import beside
 
-__all__ = ["MESHES", "SOLIDS", "Answer", "ask", "kind_of"]
+__all__ = ["GRIDS", "MESHES", "SOLIDS", "Answer", "ask", "kind_of"]
 
+GRIDS = (".p3d", ".fmt", ".cgns")
 SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
 MESHES = (".stl", ".glb", ".ply", ".obj", ".3mf", ".off", ".vtp")
 LARGEST = 2 * 10**9  # bytes of a file
@@ -57,23 +58,25 @@ class Answer:
 
 
 def kind_of(path: Path) -> str:
-    """Return "solid" or "mesh" by a file's suffix.
+    """Return "solid", "mesh" or "grid" by a file's suffix.
 
     Raises
     ------
     FileError
-        If it is neither, no regular file, or too large.
+        If it is none of them, no regular file, or too large.
     """
     suffix = path.suffix.lower()
-    if suffix not in SOLIDS + MESHES:
-        allowed = ", ".join(SOLIDS + MESHES)
-        raise FileError(str(path), [f"suffix {suffix!r}, allowed are {allowed}"])
+    if suffix not in SOLIDS + MESHES + GRIDS:
+        allowed = ", ".join(SOLIDS + MESHES + GRIDS)
+        foam = path.name.lower().endswith(".foam.zip")
+        hint = "; unpack it, and OpenFOAM's checkMesh runs there" if foam else ""
+        raise FileError(str(path), [f"suffix {suffix!r}, allowed are {allowed}{hint}"])
     if not path.is_file():
-        raise FileError(str(path), [f"is no file{beside(path, SOLIDS + MESHES)}"])
+        raise FileError(str(path), [f"is no file{beside(path, SOLIDS + MESHES + GRIDS)}"])
     size = path.stat().st_size
     if size > LARGEST:
         raise FileError(str(path), [f"has {size} bytes, allowed are {LARGEST}"])
-    return "solid" if suffix in SOLIDS else "mesh"
+    return "solid" if suffix in SOLIDS else "mesh" if suffix in MESHES else "grid"
 
 
 def ask(what: str, path: Path) -> Answer:
@@ -99,7 +102,7 @@ def ask(what: str, path: Path) -> Answer:
         If the library that reads the kind is missing.
     """
     kind = kind_of(path)
-    library = "OCP" if kind == "solid" else "trimesh"
+    library = {"solid": "OCP", "mesh": "trimesh"}.get(kind, "h5py")
     if find_spec(library) is None:
         raise ImportError(f"No module named {library!r}", name=library)
     size = path.stat().st_size

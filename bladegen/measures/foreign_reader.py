@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import BladegenError, FileError
-from bladegen.measures.foreign import SOLIDS, Answer, packed
+from bladegen.measures.foreign import GRIDS, SOLIDS, Answer, packed
 
 __all__ = ["QUESTIONS", "answer", "main"]
 
@@ -94,7 +94,11 @@ def _loaded(path: Path) -> Any:
 
 
 def _figures(path: Path) -> Answer:
-    """Measure a solid or a mesh."""
+    """Measure a solid, a mesh or a grid."""
+    if path.suffix.lower() in GRIDS:
+        from bladegen.measures.blocks import figures, reading
+
+        return Answer(figures.figures_of(reading.read(path)), {})
     from bladegen.measures.file_figures import mesh_figures, solid_figures
 
     measure = solid_figures if path.suffix.lower() in SOLIDS else mesh_figures
@@ -105,6 +109,8 @@ def _surface(path: Path) -> Answer:
     """Send faces [m] or triangles, with what a unit is in metres if the file says so."""
     from bladegen.cad import face_patches, shapes
 
+    if path.suffix.lower() in GRIDS:
+        return _sheet(path)
     shape = _loaded(path)
     if path.suffix.lower() in SOLIDS:
         bodies, sheets = shapes.bodies(shape)
@@ -114,6 +120,19 @@ def _surface(path: Path) -> Answer:
     metres = 1.0 if path.suffix.lower() == ".glb" else own
     arrays = {"vertices": np.asarray(shape.vertices), "faces": np.asarray(shape.faces)}
     return Answer({"metres": metres, "lost": 0, "sheets": 0}, arrays)
+
+
+def _sheet(path: Path) -> Answer:
+    """Send the triangles of a grid, if it is that of a surface."""
+    from bladegen.measures.blocks import figures, reading
+
+    blocks = reading.read(path)
+    if any(min(points.shape[:3]) > 1 for _, points in blocks):
+        raise FileError(str(path), ["is a volume; distances are those of surfaces"])
+    vertices, faces = figures.triangles_of(blocks)
+    metres = 1.0 if path.suffix.lower() == ".cgns" else None
+    found = {"vertices": vertices, "faces": faces}
+    return Answer({"metres": metres, "lost": 0, "sheets": 0}, found)
 
 
 def _points(path: Path) -> Answer:

@@ -221,6 +221,8 @@ def _instead(spacing: Spacing, nearer: float) -> str:
         return f"fewer cells across the trailing edge: --grid-edge {edge}"
     if spacing.around > around or spacing.along > along:
         return f"fewer points: --grid-around {around} --grid-along {along} --grid-edge {edge}"
+    if nearer == 0.0:
+        return "a smaller --first-height, or other numbers of points"
     return f"--distance {nearer:.2g}m, another --smoothing or --growth, or other numbers of points"
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
 __all__ = [
+    "at_least",
     "breaks",
     "crowding",
     "export",
@@ -109,6 +110,11 @@ def stations(blade: Any, count: int = 120) -> Array:
     fixed = np.unique(np.concatenate([[0.0], blade.eta, [1.0]]))
     found: Array = blade._crowding.spans(fixed, whole(count, "stations", DefinitionError))
     return found
+
+
+def at_least(blade: Any, count: int) -> Array:
+    """Return `stations`, more than `count` where the definition's own are more."""
+    return stations(blade, max(count, len(np.union1d(blade.eta, [0.0, 1.0]))))
 
 
 def crowding(blade: Any) -> Crowding:

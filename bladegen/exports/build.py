@@ -29,7 +29,7 @@ from bladegen.formats import writing as writers
 from bladegen.measures import checks
 from bladegen.measures.spanwise import spanwise, write_csv
 from bladegen.support.files import alone, folder, replacing, safe_stem
-from bladegen.surface import mesh_files
+from bladegen.surface import mesh, mesh_files
 from bladegen.surface.deviation import Deviation
 from bladegen.surface.grids.grid_quality import grid_figures
 from bladegen.version import __version__
@@ -142,7 +142,7 @@ def _built(
         by = products.made_from(Kind.picture, ".png")
         with ledger.writing(target / f"{stem}.combs.png", "combs", by) as temporary:
             combs.draw(blade, temporary)
-    columns = spanwise(blade, blade.stations(options.stations))
+    columns = spanwise(blade, mesh.spans(blade, options.stations))
     by = products.made_from(Kind.table, ".csv")
     with ledger.writing(target / f"{stem}{SPANWISE}", "spanwise", by) as temporary:
         write_csv(columns, temporary)

@@ -5,23 +5,19 @@ fractions and landmark parameters.  It is split into what an affine map of the s
 what the modes of a shape space would do besides, and the rest: dents and dings.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.blade import Blade
-from bladegen.blade.lofting.loft import Loft
-from bladegen.blade.shape import Shape
-from bladegen.curves.crossing import crossing_sections
-from bladegen.definition.blade_definition import Airfoil, Distribution, Station
 from bladegen.definition.distribution import united
 from bladegen.errors import BladegenError, FileError
-from bladegen.fitting import patterns
+from bladegen.fitting.wear import patterns
+from bladegen.fitting.wear.worn import APART, normals, worn
 from bladegen.measures import distances
 from bladegen.measures.surfaces import Surface
-from bladegen.shapes import affine
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.files import content_of
@@ -29,8 +25,6 @@ from bladegen.support.files import content_of
 __all__ = ["DeviationMap"]
 
 FARTHEST = 0.5  # m: what lies farther away is another surface
-APART = 1e-5  # of the span, between spans of maps that are added
-DIGITS = 9  # of airfoil coordinates
 MOST = 1 << 28  # bytes of a table
 GRID, VALUES = ("eta", "u"), "deviation_mm"
 
@@ -181,14 +175,19 @@ class DeviationMap:
 
     def __add__(self, other: "DeviationMap") -> "DeviationMap":
         """Return both together, at the spans of either; the landmarks are these."""
+        eta = united(self.eta, other.eta, apart=APART)
+        values = sum(one.between(eta, self.u) for one in (self, other))
+        return DeviationMap(eta, self.u, np.asarray(values))
+
+    def between(self, eta: Array, u: Array) -> Array:
+        """Return the values at span fractions (k,) and landmark parameters (n,), (k, n).
+
+        By monotone splines over span; beyond the first and last span they are those there.
+        """
         from scipy.interpolate import PchipInterpolator
 
-        eta = united(self.eta, other.eta, apart=APART)
-        values = sum(
-            PchipInterpolator(one.eta, one.at(self.u), axis=0)(np.clip(eta, *one.eta[[0, -1]]))
-            for one in (self, other)
-        )
-        return DeviationMap(eta, self.u, np.asarray(values))
+        spline = PchipInterpolator(self.eta, self.at(u), axis=0)
+        return np.asarray(spline(np.clip(eta, *self.eta[[0, -1]])))
 
     def at(self, u: Array) -> Array:
         """Return the values at landmark parameters (m,), (k, m), by splines along the arc."""
@@ -203,7 +202,7 @@ class DeviationMap:
         """
         space = (ShapeSpace.bundled() if space is None else space).at(blade.u)
         profiles = blade.profiles(self.eta)
-        normal = _normals(profiles)
+        normal = normals(profiles)
         x, y = profiles[..., 0], profiles[..., 1]
         one, nought = np.ones_like(x), np.zeros_like(x)
         ways = [(x, nought), (y, nought), (nought, x), (nought, y), (one, nought), (nought, one)]
@@ -221,61 +220,13 @@ class DeviationMap:
     def applied(self, blade: Blade) -> Blade:
         """Return the blade with this deviation on its skin, each landmark moved along its normal.
 
-        Its planes and axis stay; chord, twist, offsets and thickness are those of the new sections.
+        Its planes and axis stay; chord, twist, offsets and thickness are those of the new sections,
+        at as many spans as keep points within 0.3 mm of where they belong.
         """
         if blade.mirrored:
             return self.applied(blade.mirror_image()).mirror_image()
-        eta, definition, values = self.eta, blade.definition, self.at(blade.u)
-        chord = blade.chord(eta)
-        start = np.stack([-definition.offset_y(eta), definition.offset_x(eta)], axis=-1)
-        profiles = blade.profiles(eta)
-        points = chord[:, None, None] * profiles + start[:, None]
-        points = points + values[..., None] * _normals(profiles)
-        folded = list(crossing_sections(points))
-        if folded:
-            at, deepest = eta[folded[0]], -1e3 * values[folded[0]].min()
-            raise BladegenError(
-                f"deviation: {deepest:.3g} mm inward is more than the section at eta = {at:.3f} "
-                "can take: it crosses itself; end it farther inboard, or make it less deep"
-            )
-        curves = SectionSplines(blade.u).fit(points)
-        lead, away = curves.leading_edge, curves.trailing_edge - curves.leading_edge
-        turn = np.arctan2(away[:, 1], away[:, 0])
-        c, s = np.cos(turn), np.sin(turn)
-        back = np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
-        airfoils = (points - lead[:, None]) @ back / curves.chord[:, None, None]
-        place = (lead[:, None] @ back)[:, 0]
-        thickness = curves.relative_thickness
-        stations = tuple(
-            Station(
-                float(e), Airfoil(f"{blade.name} {100 * e:.2f} %", np.round(xy, DIGITS), float(t))
-            )
-            for e, xy, t in zip(eta, airfoils, thickness, strict=True)
-        )
-        made = replace(
-            definition,
-            stations=stations,
-            chord=Distribution(eta, curves.chord),
-            twist=Distribution(eta, blade.twist(eta) + turn),
-            section_offset_y=Distribution(eta, -place[:, 0]),
-            section_offset_x=Distribution(eta, place[:, 1]),
-            pitch_axis=None,
-            relative_thickness=Distribution(eta, thickness),
-        )
-        X, M, b = affine.standardise(airfoils)
-        loft = Loft(blade.u, eta, X, M, b, made.relative_thickness, blade.path)
-        planform = replace(blade.planform, definition=made)
-        told = {"outward_mm": float(1e3 * values.max()), "inward_mm": float(-1e3 * values.min())}
-        changes = (*blade.changes, {"deviation": told})
-        worn = Blade(Shape(loft), planform, blade.trailing_edge, blade.findings, changes)
-        return worn.require_sound(allow_odd=True)
-
-
-def _normals(profiles: Array) -> Array:
-    """Return outward unit normals (k, n, 2) of sections that run from suction to pressure."""
-    along = np.gradient(profiles, axis=1)
-    normal = along[..., ::-1] * [1.0, -1.0]
-    return np.asarray(normal / np.linalg.norm(normal, axis=-1, keepdims=True))
+        made = worn(blade, self.eta, lambda eta: self.between(eta, blade.u))
+        return made.require_sound(allow_odd=True)
 
 
 def _projected(basis: Array, values: Array) -> Array:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.outputs import at_least
 from bladegen.measures.patches import Patch
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.ends import edge_poles, rounded
@@ -130,7 +131,7 @@ def _net(blade: Blade) -> SurfaceNet:
 
     A blade may be creased at the grids of its definition, so that no smooth spline will do.
     """
-    v = np.unique(np.concatenate([blade.breaks, blade.stations(STATIONS)]))
+    v = np.unique(np.concatenate([blade.breaks, at_least(blade, STATIONS)]))
     v = v[np.concatenate([[True], np.diff(v) > NEAREST_KNOTS])]
     v[-1] = 1.0
     u = resolving(blade, blade.stations(max(60, len(blade.eta) + 2)), CLOSE)

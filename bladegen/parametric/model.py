@@ -20,6 +20,7 @@ import numpy as np
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.blade import Blade
 from bladegen.blade.changes.window import Window
+from bladegen.blade.outputs import at_least
 from bladegen.blade.perturbation import Where
 from bladegen.blade.spans import around, span_fractions
 from bladegen.blade.variants.batch import Batch, SectionBatch
@@ -105,7 +106,7 @@ class ParametricBlade:
         if self.blade.mirrored:
             raise PerturbationError("blade: is a mirror image; make the model of the blade")
         known_convention(self.chord_line)
-        eta = self.blade.stations(SPANS) if self.eta is None else span_fractions(self.eta)
+        eta = at_least(self.blade, SPANS) if self.eta is None else span_fractions(self.eta)
         window = self.window or Window.beyond_circles(self.blade.definition.stations)
         instance(window, Window, "window", "a bladegen.Window(start, end)", PerturbationError)
         changed: dict[str, Any] = {"eta": readonly(eta.reshape(-1)), "window": window}

@@ -11,12 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.outputs import at_least
 from bladegen.errors import GeometryError
 from bladegen.support.arrays import Array, Indices, readonly
 from bladegen.surface.regions import REGIONS
 from bladegen.surface.tips import Tip, arcs, flat_tip, on_arcs
 
-__all__ = ["ACROSS", "TriangleMesh", "from_blade", "surface", "topology"]
+__all__ = ["ACROSS", "TriangleMesh", "from_blade", "spans", "surface", "topology"]
 
 ACROSS = 16  # quads across a rounded tip
 SECTIONS = 300  # 300 x 401 landmarks make 240,000 triangles
@@ -76,7 +77,7 @@ class TriangleMesh:
 
 def from_blade(blade: Blade, *, stations: int = SECTIONS, tip: Tip = flat_tip) -> TriangleMesh:
     """Mesh a blade by `stations` sections where it bends, ended by `tip`."""
-    eta, poles = blade.stations(stations), arcs(blade, tip)
+    eta, poles = spans(blade, stations), arcs(blade, tip)
     places = np.stack(np.meshgrid(eta, blade.u, indexing="ij"), axis=-1).reshape(-1, 2)
     across = None
     if poles is not None:
@@ -88,6 +89,11 @@ def from_blade(blade: Blade, *, stations: int = SECTIONS, tip: Tip = flat_tip) -
     made = surface(blade.sections(eta), across, places)
     sides = [REGIONS.index(name) for name in blade.sides]
     return replace(made, regions=np.array([*sides, *range(2, len(REGIONS))])[made.regions])
+
+
+def spans(blade: Blade, stations: int = SECTIONS) -> Array:
+    """Return spans of a mesh's sections: more than the default where the blade's own are more."""
+    return at_least(blade, SECTIONS) if stations == SECTIONS else blade.stations(stations)
 
 
 def surface(

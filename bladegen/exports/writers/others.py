@@ -8,6 +8,7 @@ from bladegen.exports.definitions import marking
 from bladegen.exports.options import Kind
 from bladegen.exports.products import Products
 from bladegen.formats import writing
+from bladegen.surface import mesh
 from bladegen.surface.grids import grid_files
 
 __all__ = ["write_csv", "write_definition", "write_inp"]
@@ -24,7 +25,7 @@ def write_inp(products: Products, path: Path) -> None:
 def write_csv(products: Products, path: Path) -> None:
     """Write a table of sections."""
     blade = products.blade
-    eta = blade.stations(products.options.stations)
+    eta = mesh.spans(blade, products.options.stations)
     grid_files.write_sections(eta, blade.u, blade.sections(eta), path)
 
 

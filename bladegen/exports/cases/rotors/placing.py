@@ -7,6 +7,7 @@ import numpy as np
 
 from bladegen.blade.aero.elements import elements_of
 from bladegen.blade.blade import Blade
+from bladegen.blade.outputs import at_least
 from bladegen.cad.rotor import Rotor
 from bladegen.errors import GeometryError
 from bladegen.exports.cases.rotors.operation import REFERENCE
@@ -33,7 +34,7 @@ def radii(blade: Blade, rotor: Rotor) -> tuple[float, float]:
 
 def standing(blade: Blade, rotor: Rotor, pitch: float) -> TriangleMesh:
     """Return the blade's surface in the rotor's frame, pitched."""
-    made = from_blade(blade, stations=STATIONS)
+    made = from_blade(blade, stations=len(at_least(blade, STATIONS)))
     c, s = np.cos(pitch), np.sin(pitch) * (-1.0 if blade.mirrored else 1.0)
     pitched = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])  # the nose, -y, to -x
     rotations, shifts = rotor.placements()

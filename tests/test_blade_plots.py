@@ -113,7 +113,7 @@ def test_figures_name_the_blade_and_touch_no_global_state(name, blade, variant, 
     monkeypatch.setattr(volume_plot, "SPACING", few_points)
     before = pyplot.get_fignums()
     drawn = blade_plots.PLOTS[name].draw(variant, blade)
-    assert "NREL 5 MW, perturbed: changed" in drawn.get_suptitle()
+    assert "perturbed: t 0.03, 0, 0, 0, thickness 1.05, twist" in drawn.get_suptitle()
     assert all(axis.get_ylabel() for axis in drawn.axes)
     assert pyplot.get_fignums() == before
 

@@ -7,6 +7,7 @@ from bladegen.cad import exchange, shapes
 from bladegen.errors import ExportError, ToleranceError
 from bladegen.exports.build import build, report_path
 from bladegen.exports.options import Options
+from bladegen.families.order import Order
 from bladegen.surface.tips import round_tip
 from bladegen.views.tables import report_rows
 
@@ -104,6 +105,17 @@ def test_a_missed_tolerance_is_said_and_the_rest_is_made(tmp_path, monkeypatch):
         "nrel5mw.report.json",
         "nrel5mw.spanwise.csv",
     }
+
+
+@pytest.mark.parametrize("suffix", ["inp", "structure.step"])
+def test_a_blade_without_layers_is_refused_before_anything_is_made(tmp_path, suffix):
+    bare = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=101)
+    with pytest.raises(ExportError, match="has no webs and layers, of which a s"):
+        build(bare, tmp_path, formats=["stl", suffix])
+    assert list(tmp_path.iterdir()) == []
+    family = bg.family(bare, bg.ShapeSpace.bundled(), count=1)
+    with pytest.raises(ExportError, match="has no webs and layers, of which a s"):
+        Order(family, tmp_path / "family", formats=(suffix,))
 
 
 def test_an_unknown_format_is_refused_before_anything_is_made(blade, tmp_path):

@@ -49,7 +49,7 @@ def test_preview_opens_a_window_of_a_perturbed_blade(monkeypatch):
     assert run("preview", "nrel5mw", "--landmarks", 51, "--twist", 2).exit_code == 0
     (plain, first), (turned, second) = shown
     assert (plain.title, first) == ("NREL 5 MW", {"colour": "plain"})
-    assert turned.title == "NREL 5 MW, perturbed: nrel5mw-perturbed"
+    assert turned.title == "NREL 5 MW; perturbed: twist 2 deg"
     assert second == {"colour": "distance"}
     assert turned.field("distance").values.max() > 10
 
@@ -99,7 +99,7 @@ def test_preview_compares_two(tmp_path, monkeypatch):
     result = run("preview", "--compare", one, other, "--screenshot", png, "--html", html)
     assert result.exit_code == 0, result.output
     assert "names no unit and is taken to be in millimetres" in result.output
-    assert "distance from the other, mm" in html.read_text(encoding="utf-8")
+    assert "distance of its vertices from the other, mm" in html.read_text(encoding="utf-8")
     image = np.asarray(Image.open(png).convert("RGB")).astype(int)
     assert np.count_nonzero(np.abs(image[..., 0] - image[..., 1]) > 40) > 1000
     shown = []

@@ -4,6 +4,7 @@ import base64
 import json
 import re
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,8 +27,9 @@ FLAGS = (
 
 @pytest.fixture(scope="module")
 def scene():
-    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
-    return scene_of(blade.perturbed(thickness=1.1, name="<thick>"), blade, sections=60)
+    plain = replace(bg.read("nrel5mw"), description="<thick>")
+    blade = bg.Blade.from_definition(plain, landmarks=101)
+    return scene_of(blade.perturbed(thickness=1.1), blade, sections=60)
 
 
 def data_of(text):

@@ -232,6 +232,15 @@ def test_a_file_beside_those_of_an_index_is_an_airfoil_too(tmp_path):
     assert problems(path).startswith("airfoil 'yours': blade_csv_airfoils holds mine, Cylinder")
 
 
+def test_a_file_without_a_blade_names_those_beside_it_that_hold_one(tmp_path):
+    other = tmp_path / "ElastoDyn.dat"
+    other.write_text("------- ELASTODYN INPUT FILE\n")
+    assert "beside it" not in problems(other)
+    for name in ("one.dat", "two.htc"):
+        bg.write(bg.read("nrel5mw"), tmp_path / name)
+    assert problems(other).endswith("; beside it there is one in one.dat, two.htc")
+
+
 def test_airfoil_folders_tell_what_is_wrong(tmp_path):
     path = table(tmp_path, TABLE)
     assert "is no folder" in problems(path, airfoils=tmp_path / "nowhere")

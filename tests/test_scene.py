@@ -76,7 +76,7 @@ def test_without_a_baseline_there_are_no_distances(blade):
 
 def test_a_perturbed_blade_says_so(blade):
     found = blade_scene.scene_of(blade.perturbed(twist=0.01, name="turned"), blade, sections=60)
-    assert found.title == "NREL 5 MW, perturbed: turned"
+    assert found.title == "NREL 5 MW; perturbed: twist 0.573 deg"
     assert "61.5 m long" in found.caption
 
 

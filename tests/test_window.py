@@ -99,7 +99,7 @@ def test_a_window_opens_with_the_scene_and_its_keys(scene, monkeypatch):
 
     monkeypatch.setattr(pyvista.Plotter, "__init__", off_screen)
     preview.show(scene, colour="distance")
-    assert shown == [{"title": "bladegen - NREL 5 MW, perturbed: thick"}]
+    assert shown == [{"title": "bladegen - NREL 5 MW; perturbed: thickness 1.1"}]
     assert set("swtbgcd123456hq") <= set(bound)
     bound["s"]()
     bound["q"]()

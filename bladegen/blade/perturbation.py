@@ -26,7 +26,9 @@ from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import amount, instance, numbers, shown
 from bladegen.support.arrays import ArrayLike
 
-__all__ = ["Perturbation", "Where", "change_of", "deviated", "together", "told"]
+__all__ = ["PERTURBED", "Perturbation", "Where", "change_of", "deviated", "together", "told"]
+
+PERTURBED = "; perturbed: "  # ahead of what one call of `perturbed` asked for
 
 Own = TypeVar("Own")
 CALL = "call perturbed(space, [t1, t2, ...]), with space = bladegen.ShapeSpace.bundled()"
@@ -152,7 +154,7 @@ def told(change: dict[str, Any]) -> str:
     if rows:
         first = ", ".join(f"{value:.4g}" for value in rows[0])
         words.insert(0, f"t {first}" if len(rows) == 1 else f"t at {len(rows)} spans")
-    return f"; perturbed: {', '.join(words) or 'by nothing'}"
+    return f"{PERTURBED}{', '.join(words) or 'by nothing'}"
 
 
 def deviated(blade: Own, deviation: Any) -> Own:

@@ -60,6 +60,7 @@ def info(
     Of any file that bladegen wrote it shows what it is made from; of a family's folder, what is
     in it and how it spreads.
     """
+    from bladegen.formats.airfoils.contours import thickness
     from bladegen.formats.reading import holds_blade, is_read, read
     from bladegen.views.tables import definition_figures, station_rows
 
@@ -83,10 +84,11 @@ def info(
     if as_json:
         typer.echo(json.dumps(figures, indent=2))
         return
-    print_figures(figures["blade"], {k: v for k, v in figures.items() if not isinstance(v, list)})
+    single = {k: v for k, v in figures.items() if not isinstance(v, list) and v != ""}
+    print_figures(figures["blade"], single)
     print_table(
         ["eta", "z m", "airfoil", "chord m", "twist deg", "thickness"],
-        station_rows(definition),
+        station_rows(definition, lambda airfoil: thickness(airfoil.coordinates)),
         title="stations",
     )
     if "layers" in figures:

@@ -22,7 +22,7 @@ from bladegen.exports import exporters, marks
 from bladegen.exports.inventory import REPORT, others
 from bladegen.exports.ledger import Ledger
 from bladegen.exports.options import Kind, Options
-from bladegen.exports.products import Products
+from bladegen.exports.products import Products, require
 from bladegen.exports.provenance import Provenance, word
 from bladegen.exports.registry import FORMATS, format_of, suffix_of
 from bladegen.formats import writing as writers
@@ -107,6 +107,7 @@ def _built(
     for path in paths:
         if format_of(path).kind is Kind.definition and blade.mirrored:
             raise ExportError(writers.MIRRORED)
+        require(blade, format_of(path).kind)
     options = options or Options()
     products = Products(blade, options, progress)
     ledger = Ledger(progress)

@@ -20,7 +20,24 @@ from bladegen.surface.inner.inner import TOLERANCE
 from bladegen.surface.tips import flat_tip
 from bladegen.surface.volumes import volume
 
-__all__ = ["Products"]
+__all__ = ["Products", "require"]
+
+INSIDE = {Kind.structure: "a structure in CAD", Kind.shell: "a shell model"}
+
+
+def require(blade: Blade, kind: Kind) -> None:
+    """Raise where a blade has nothing inside of which a file of a kind would be made.
+
+    Raises
+    ------
+    ExportError
+        As said, with what has some.
+    """
+    if kind in INSIDE and blade.layup is None:
+        raise ExportError(
+            f"{blade.name}: its definition has no webs and layers, of which {INSIDE[kind]} "
+            "is made; iea15mw and nrel5mw have some, and turbine files of windIO"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +83,7 @@ class Products:
     @cached_property
     def inside(self) -> assembly.Inside:
         """The skin, cut where layers end, the webs, and the inner surface."""
-        layup, solid = self._layup("a structure in CAD"), self.solid
+        layup, solid = self._layup(Kind.structure), self.solid
         self.progress("cutting the skin where layers end")
         made = assembly.inside(solid, layup, max(TOLERANCE, self.options.tolerance))
         self.remarks.extend(made.findings)
@@ -74,20 +91,17 @@ class Products:
             self.remarks.append(Finding("structure", "its skin ends flat, without the round tip"))
         return made
 
-    def _layup(self, what: str) -> Layup:
+    def _layup(self, kind: Kind) -> Layup:
         """Return what lies inside the skin, or say that there is nothing."""
+        require(self.blade, kind)
         layup: Layup | None = self.blade.layup
-        if layup is None:
-            raise ExportError(
-                f"{self.blade.name}: its definition has no webs and layers, of which {what} "
-                "is made; iea15mw and nrel5mw have some, and turbine files of windIO"
-            )
+        assert layup is not None
         return layup
 
     @cached_property
     def shell(self) -> ShellModel:
         """The shell model of skin and webs."""
-        layup = self._layup("a shell model")
+        layup = self._layup(Kind.shell)
         self.progress("making the shell")
         model = shell_model(layup, self.options.element)
         self.remarks.extend(model.findings)

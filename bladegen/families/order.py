@@ -7,6 +7,7 @@ from typing import Any
 
 from bladegen.errors import ExportError, FamilyError
 from bladegen.exports.options import Kind, Options
+from bladegen.exports.products import require
 from bladegen.exports.registry import format_of
 from bladegen.families.family import BLOCK, Family
 from bladegen.families.folder import FLOAT_TYPES, GRAPH, FamilyFolder
@@ -55,8 +56,10 @@ class Order:
         if self.dtype not in FLOAT_TYPES:
             raise FamilyError(f"dtype: got {self.dtype!r}, allowed are {', '.join(FLOAT_TYPES)}")
         for suffix in self.suffixes:
-            if format_of(Path(f"x{suffix}")).kind is Kind.definition and self.family.blade.mirrored:
+            kind = format_of(Path(f"x{suffix}")).kind
+            if kind is Kind.definition and self.family.blade.mirrored:
                 raise ExportError(MIRRORED)
+            require(self.family.blade, kind)
         # Sums depend in their last digit on how many threads add them up: what the family has
         # computed so far is left behind, and `making.make_block` computes it again in one thread.
         fresh = replace(self.family, blade=replace(self.family.blade))

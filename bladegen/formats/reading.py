@@ -148,6 +148,9 @@ def _recognised(path: Path) -> tuple[str, Reader]:
                 return name, reader
             marks.append(f"{reader.mark} ({name})")
     must = " or ".join(marks)
+    others = (path.with_name(name) for name in _blades(path.parent) if name != path.name)
+    there = [other.name for other in islice(others, MANY) if holds_blade(other)][:FEW]
+    near = f"; beside it there is one in {', '.join(there)}" if there else ""
     raise FileError(
-        str(path), [f"holds no blade that is known, must hold {must}{plugins().remark}"]
+        str(path), [f"holds no blade that is known, must hold {must}{plugins().remark}{near}"]
     )

@@ -134,11 +134,12 @@ def scene(comparison: Comparison, title: str) -> Scene:
     """
     shown, other = comparison.one.mesh, comparison.other.mesh
     distance = MILLIMETRES * distances.signed(shown.vertices, comparison.other)
-    label = "distance from the other, mm, outside positive"
+    label = "distance of its vertices from the other, mm, outside positive"
     figures = comparison.figures
     return Scene(
         title=title,
-        caption=f"largest distance {figures['maximum_mm']:.3g} mm, RMS {figures['rms_mm']:.3g} mm",
+        caption=f"largest distance {figures['maximum_mm']:.3g} mm, RMS "
+        f"{figures['rms_mm']:.3g} mm, each from the other, between vertices too",
         surface=shown,
         fields=(Field.signed("distance", label, distance, shown),),
         layers=(
@@ -170,7 +171,10 @@ def draw(comparison: Comparison, title: str, path: Path) -> None:
             actor = add_surface(plotter, shown, field)
             look(plotter, found.surface.vertices, VIEWS[side], 2.0 * SIZE[0] / SIZE[1])
             plotter.add_text(f"{title}, {side}", position=(16, 16), font_size=9, color=INK)
-            if row:
+            if row == 0:
+                top = SIZE[1] // 2 - 40
+                plotter.add_text(found.caption, position=(16, top), font_size=9, color=INK)
+            else:
                 add_colour_bar(plotter, actor, field.label)
         image = image_of(plotter, f"{path}: the picture")
     save_image(image, path)

@@ -1,10 +1,11 @@
 """Figures as rows of text: what the command line and notebooks show of a blade."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bladegen.definition.blade_definition import BladeDefinition, Distribution
+from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distribution
 from bladegen.support.arrays import Array
 
 if TYPE_CHECKING:
@@ -86,21 +87,29 @@ def definition_figures(definition: BladeDefinition) -> dict[str, Any]:
     }
 
 
-def station_rows(definition: BladeDefinition) -> list[list[str]]:
-    """Return a row a station: eta, z, airfoil, chord, twist, thickness."""
+def station_rows(
+    definition: BladeDefinition, own: Callable[[Airfoil], float] | None = None
+) -> list[list[str]]:
+    """Return a row a station: eta, z, airfoil, chord, twist, thickness.
+
+    Where a definition has no thickness over span, it is each airfoil's `own`.
+    """
     eta = np.array([station.eta for station in definition.stations])
     z, chord = _between(definition.axis.z, eta), _between(definition.chord, eta)
     twist = np.degrees(_between(definition.twist, eta))
     thickness = definition.relative_thickness
-    ratios = np.full(len(eta), np.nan) if thickness is None else _between(thickness, eta)
+    if thickness is not None:
+        ratios = _between(thickness, eta)
+    else:
+        ratios = np.array([np.nan if own is None else own(s.airfoil) for s in definition.stations])
     return [
         [
             f"{station.eta:.4f}",
-            digits(z[i], 2),
+            digits(round(z[i], 9) + 0.0, 2),
             station.airfoil.name,
             digits(chord[i], 3),
             f"{twist[i]:.2f}",
-            "" if thickness is None else f"{ratios[i]:.3f}",
+            "" if np.isnan(ratios[i]) else f"{ratios[i]:.3f}",
         ]
         for i, station in enumerate(definition.stations)
     ]

@@ -53,11 +53,10 @@ def alike(things: Sequence[Blade | Path]) -> tuple[list[Blade | Path], list[Tip]
             made[k] = made_from(thing, {"tip": word(tips[k])})
     one, two = made
     if one is not None and two is not None:
-        said += [
-            f"{what}: {a} in {names[0]}, {b} in {names[1]}"
-            for what, a, b in one.differences(two)
-            if what not in DIFFERENT
-        ]
+        found = [row for row in one.differences(two) if row[0] not in DIFFERENT]
+        if any(what == "source" for what, _, _ in found):  # then its hash is no news
+            found = [row for row in found if row[0] != "definition"]
+        said += [f"{what}: {a} in {names[0]}, {b} in {names[1]}" for what, a, b in found]
     return taken, tips, said
 
 

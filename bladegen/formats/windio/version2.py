@@ -163,10 +163,12 @@ def _offset(definition: BladeDefinition, note: Note) -> Distribution:
     grid = united(definition.pitch_axis.grid, definition.chord.grid)
     made = sampled(definition.offset_y, grid, writing.OFFSET)
     off = missed(made, definition.offset_y)
-    note(
-        "section_offset_y",
-        f"pitch axis times chord at {len(made.grid)} points, within {off:.1g} m of the product",
-    )
+    if off > 0.0:
+        note(
+            "section_offset_y",
+            f"is the pitch axis times the chord, at {len(made.grid)} points; between them within "
+            f"{off:.1g} m of it",
+        )
     return made
 
 

@@ -88,6 +88,7 @@ def sections(blade: Blade, baseline: Blade | None = None) -> Any:
     standard.set(title="landmark-affine standardised", xlabel="X, column 1", ylabel="X, column 2")
     for axis in (metres, chords, standard):
         axis.set_aspect("equal", adjustable="datalim")
+        axis.locator_params(axis="x", nbins=6)
     drawn.legend(
         *metres.get_legend_handles_labels(),
         loc="outside right upper",

@@ -1,5 +1,6 @@
 """Diagrams by matplotlib: what a shape space holds.  matplotlib is imported when first needed."""
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Literal
@@ -7,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.perturbation import PERTURBED, told
 from bladegen.errors import visible
 from bladegen.shapes import affine
 from bladegen.shapes.shape_space import ShapeSpace
@@ -21,6 +23,7 @@ __all__ = [
     "dress",
     "figure",
     "figure_of",
+    "heading",
     "pair",
     "physical",
     "save_figure",
@@ -30,6 +33,8 @@ __all__ = [
 ]
 
 SUFFIXES = (".png", ".svg", ".pdf")
+RADIANS = re.compile(r"\S+ rad \((.*?)\)")  # which stand beside degrees
+LONGEST = 100  # letters of what was changed in a title
 DPI = 150  # pixels an inch
 
 
@@ -73,14 +78,30 @@ def dress(axis: Any) -> None:
         text.set_fontsize(10)
 
 
+def heading(blade: Blade) -> str:
+    """Return what a picture of a blade is headed by: which blade it is, and what was changed."""
+    return "; ".join(part for part in (_name(blade), _changes(blade)) if part)
+
+
+def _name(blade: Blade) -> str:
+    name = visible(blade.definition.description or blade.name)
+    return name + (", mirrored" if blade.mirrored else "")
+
+
+def _changes(blade: Blade) -> str:
+    """Return what was changed of a blade, cut short where it is much."""
+    words = ", ".join(told(change).removeprefix(PERTURBED) for change in blade.changes)
+    words = RADIANS.sub(r"\1", words).replace("_", " ")
+    if len(words) > LONGEST:
+        words = words[: words.rfind(", ", 0, LONGEST)] + ", ..."
+    return words and f"perturbed: {words}"
+
+
 def titled(drawn: Any, blade: Blade, what: str, baseline: Blade | None = None) -> Any:
     """Give a figure of a blade its title; say what dashes are where no legend does."""
-    name = visible(blade.definition.description or blade.name)
-    name += ", mirrored" if blade.mirrored else ""
-    if blade.changes:
-        name += f", perturbed: {blade.name}"
     dashes = "" if baseline is None else "; baseline dashed"
-    drawn.suptitle(f"{name}: {what}{dashes}", color=INK, fontsize=13)
+    changes = f"\n{_changes(blade)}" if blade.changes else ""
+    drawn.suptitle(f"{_name(blade)}: {what}{dashes}{changes}", color=INK, fontsize=13)
     return drawn
 
 

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.errors import visible
 from bladegen.support.arrays import Array
 from bladegen.surface.mesh import TriangleMesh, surface
 from bladegen.views.plots import style
+from bladegen.views.plots.figures import heading
 from bladegen.views.rendering.drawing import signed_distances
 from bladegen.views.rendering.scene import Field, Label, Layer, Scene
 
@@ -69,7 +69,7 @@ def scene_of(
         lines = _closed(baseline.sections(np.linspace(0.0, 1.0, LINES)))
         layers.append(Layer("baseline", (lines,), style.INK, 1.0))
     return Scene(
-        title=_title(blade),
+        title=heading(blade),
         caption=caption(blade),
         surface=shown,
         fields=tuple(fields),
@@ -178,13 +178,6 @@ def _reach(blade: Blade) -> tuple[float, float, float]:
     """Return the lengths of the frame's arms [m]."""
     arm = 0.06 * blade.length
     return arm, arm, 1.02 * blade.length
-
-
-def _title(blade: Blade) -> str:
-    definition = blade.definition
-    title = visible(definition.description or definition.name)
-    title += ", mirrored" if blade.mirrored else ""
-    return f"{title}, perturbed: {definition.name}" if blade.changes else title
 
 
 def caption(blade: Blade) -> str:

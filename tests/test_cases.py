@@ -19,6 +19,7 @@ from typer.testing import CliRunner
 import bladegen as bg
 from bladegen.blade.edges import Sharp
 from bladegen.cli.commands import app
+from bladegen.cli.nested import case as command
 from bladegen.errors import ExportError, GeometryError
 from bladegen.exports import marks
 from bladegen.exports.cases.cell_measures import non_orthogonality
@@ -237,6 +238,65 @@ def test_the_case_says_what_it_is_made_from_and_how_it_is_run(written):
     assert dict(made.settings)["y_plus"] == "30"
     assert os.access(written / "Allrun", os.X_OK)
     subprocess.run(["sh", "-n", str(written / "Allrun")], check=True)
+
+
+@pytest.mark.parametrize(
+    ("given", "others"),
+    [
+        (command.OfSection(), "--speed, --alpha"),
+        (command.OfSection(speed=60.0), "--alpha"),
+        (command.OfRotor(), "--wind, --tip-speed-ratio, --pitch"),
+        (command.OfRotor(wind=8.0), "--tip-speed-ratio, --pitch"),
+        (command.OfRotor(wind=8.0, rotor_speed=9.0), "--pitch"),
+    ],
+)
+def test_what_was_taken_is_changed_by_options_that_were_not_given(given, others):
+    assert command._others(given) == others
+
+
+@pytest.mark.parametrize(
+    ("count", "failing"), [("1", ""), ("3", ""), ("1", "checkMesh"), ("3", "decomposePar")]
+)
+def test_the_script_says_what_it_runs_and_where_it_failed(written, tmp_path, count, failing):
+    """By programs that stand for OpenFOAM's."""
+    case, programs = tmp_path / "case", tmp_path / "programs"
+    shutil.copytree(written, case)
+    programs.mkdir()
+    names = ["foamListTimes", "checkMesh", "foamDictionary", "decomposePar", "simpleFoam"]
+    for name in [*names, "mpirun", "reconstructPar"]:
+        last = "postProcessing/forces/0"
+        makes = f"mkdir -p {last}; echo '7 0.01 0 1.2 0 0' | tr ' ' '\\t' > {last}/coefficient.dat"
+        ends = "echo FOAM FATAL ERROR >&2; exit 1" if name == failing else makes
+        (programs / name).write_text(f'#!/bin/sh\necho {name} "$@"\n{ends}\n')
+        (programs / name).chmod(0o755)
+    path = f"{programs}:{os.environ['PATH']}"
+    done = subprocess.run(
+        [case / "Allrun", count],
+        env={**os.environ, "PATH": path, "WM_PROJECT_DIR": "/nowhere"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    steps = [line.split(maxsplit=1)[1] for line in done.stdout.splitlines() if line[2:3] == ":"]
+    if failing:
+        assert done.returncode == 1
+        assert done.stderr.splitlines()[0] == f"Allrun: {failing} failed; the end of log.{failing}:"
+        assert done.stderr.endswith("FOAM FATAL ERROR\n")
+        assert steps[-1].startswith(failing)
+        return
+    assert done.returncode == 0
+    solved = {
+        "1": ["checkMesh", "simpleFoam"],
+        "3": [
+            "checkMesh",
+            "decomposePar -force",
+            "mpirun -np 3 simpleFoam -parallel",
+            "reconstructPar -latestTime",
+        ],
+    }
+    assert steps == solved[count]
+    assert done.stdout.splitlines()[-1] == "7\t0.01\t0\t1.2"
+    assert (case / "log.simpleFoam").is_file()
 
 
 def test_the_stream_is_that_of_the_rotor():

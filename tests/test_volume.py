@@ -328,7 +328,7 @@ def test_angles_and_skewness_are_checkmesh_s(blade, tmp_path):
 def exported(name, tip, path):
     """A bundled blade's volume, of the size that docs/grids.md has figures of."""
     blade = Blade.from_definition(read(name))
-    spacing = Spacing(around=129, along=81, edge=16)
+    spacing = Spacing(around=129, along=81, edge=16, trailing_edge=2e-3)
     extrusion = Extrusion(first_height=1e-4)
     return bg.export(blade, path, tip=TIPS[tip], spacing=spacing, extrusion=extrusion)
 

@@ -136,21 +136,34 @@ def case_openfoam(
         progress(f"reading {blade}")
         if section is None:
             made: Any = _of_rotor(making, blade, rotor, meshing, progress)
-            title, asking = f"{blade}, a rotor", "--wind, --tip-speed-ratio and --pitch"
+            title = f"{blade}, a rotor"
         else:
             made = _of_section(making, blade, section, flow, meshing, progress)
-            title, asking = f"{blade} at {100.0 * section:g} % span", "--speed and --alpha"
+            title = f"{blade} at {100.0 * section:g} % span"
         progress(f"writing {output}")
         made.write(output, command=COMMAND.get())
     if as_json:
         typer.echo(json.dumps(made.figures, indent=2))
         return
     if made.flow.told:
-        remark(f"{made.flow.told}; give {asking} for others")
+        others = _others(rotor if section is None else flow)
+        remark(f"{made.flow.told}; to change that: {others}")
     for line in made.remarks:
         remark(line)
     print_figures(title, made.figures)
     typer.echo(f"wrote {output}: run it with {output}/Allrun, {output}/README.md says how")
+
+
+def _others(given: OfRotor | OfSection) -> str:
+    """Name the options of a flow that were not given and may be."""
+    if isinstance(given, OfSection):
+        values = {"--speed": given.speed, "--alpha": given.alpha}
+    else:
+        values = {"--wind": given.wind, "--tip-speed-ratio": given.tip_speed_ratio}
+        if sum(value is not None for value in (*values.values(), given.rotor_speed)) > 1:
+            values = {}  # two of the three make the third
+        values["--pitch"] = given.pitch
+    return ", ".join(name for name, value in values.items() if value is None)
 
 
 def _require_of(others: OfRotor | OfSection, section: float | None) -> None:

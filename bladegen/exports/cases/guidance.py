@@ -108,7 +108,7 @@ def allrun(steps: Sequence[str], slices: str, results: str, told: str) -> str:
         Its first columns' names, parted by commas.
     """
     made = " constant/polyMesh" if "blockMesh" in steps else ""
-    before = "\n".join(f"{step} > log.{step.split()[0]}" for step in steps)
+    before = "\n".join(f"step {step.split()[0]} {step}" for step in steps)
     last = f"postProcessing/{results}/0/coefficient.dat"
     return f"""#!/bin/sh
 # Runs the case to its coefficients; ./{RUN} 4 solves in four processes.  As root, in a container,
@@ -123,19 +123,28 @@ command -v simpleFoam > /dev/null || {{
     echo "{RUN}: no simpleFoam on the path; install OpenFOAM, or source its etc/bashrc" >&2
     exit 1
 }}
+step() {{    # name command...: runs a command, with a log of that name
+    log=log.$1
+    shift
+    echo "$(date +%H:%M:%S) $*"
+    "$@" > "$log" 2>&1 || {{
+        echo "{RUN}: $1 failed; the end of $log:" >&2
+        tail -n 12 "$log" >&2
+        exit 1
+    }}
+}}
 foamListTimes -rm
 rm -rf processor* postProcessing{made} log.*
 {before}
+echo "         iterations take minutes: tail -f log.simpleFoam shows how far they are"
 if [ "$count" -gt 1 ]; then
-    {{
-        foamDictionary -entry numberOfSubdomains -set "$count" system/decomposeParDict
-        foamDictionary -entry coeffs/n -set "({slices})" system/decomposeParDict
-        decomposePar -force
-    }} > log.decomposePar
-    mpirun -np "$count" simpleFoam -parallel > log.simpleFoam
-    reconstructPar -latestTime > log.reconstructPar
+    foamDictionary -entry numberOfSubdomains -set "$count" system/decomposeParDict > log.processes
+    foamDictionary -entry coeffs/n -set "({slices})" system/decomposeParDict >> log.processes
+    step decomposePar decomposePar -force
+    step simpleFoam mpirun -np "$count" simpleFoam -parallel
+    step reconstructPar reconstructPar -latestTime
 else
-    simpleFoam > log.simpleFoam
+    step simpleFoam simpleFoam
 fi
 touch case.foam
 echo "{told}, ...: the last line of {last}"

@@ -159,9 +159,9 @@ class RotorCase:
         if self.cells >= FINE:
             return []
         return [
-            f"{self.cells} cells around the section are few: drag comes out too high, with 48 by "
-            "50 to 100 %, and torque too low; docs/cfd.md says how near runs came, and what a "
-            "real one needs"
+            f"{self.cells} cells around the section are few: drag comes out too high and torque "
+            "too low (48 cells: drag half as high again to twice as high); docs/cfd.md says what "
+            "a real run needs"
         ]
 
     def write(self, folder: Path, *, command: str = "") -> None:

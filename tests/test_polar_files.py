@@ -19,6 +19,7 @@ from bladegen.airfoils.polars import BORROWED, Polar
 from bladegen.cli import commands
 from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Distribution, Station
 from bladegen.definition.blending import Between, between, completed, of_their_own
+from bladegen.errors import ExportError
 from bladegen.formats.common.document import Notes
 from bladegen.formats.hawc2.polar_reading import profile_sets as read_sets
 from bladegen.formats.into import with_polars_of, write_into
@@ -249,6 +250,37 @@ def test_an_airfoil_of_another_shape_takes_no_polars_of_its_name(tmp_path):
     assert str(said) == "polars: 1 airfoil of model.yaml keeps its own"
     assert found.stations[0].airfoil.polars[0].reynolds == 4e6
     assert with_polars_of(changed, tmp_path / "none.yaml") == (changed, ())
+
+
+def test_nodes_of_aerodyn_are_as_many_as_are_asked_for(tmp_path):
+    blade = with_polars(4e6)
+    said = " ".join(map(str, bg.write(blade, tmp_path / "blade.dat", nodes=30)))
+    assert "BlSpn: 30 nodes for all quantities" in said
+    made = bg.read(tmp_path / "blade.dat")
+    eta = np.linspace(0.0, 1.0, 30)
+    assert len(made.chord.grid) == 30
+    assert_allclose(made.chord.grid, eta, atol=1e-9)
+    assert_allclose(made.chord.values, blade.chord(eta), rtol=1e-12)
+    assert_allclose(made.twist.values, blade.twist(eta), atol=1e-12)
+    main = tmp_path / "main.dat"
+    part = (tmp_path / "blade_AeroDyn_part.dat").read_text()
+    main.write_text(f"------- AERODYN INPUT FILE ----\ntitle\n{part}")
+    write_into(blade, main, tmp_path / "new.dat", nodes=20)
+    assert len(bg.read(tmp_path / "new.dat").chord.grid) == 20
+
+
+@pytest.mark.parametrize(
+    ("suffix", "nodes", "told"),
+    [
+        ("dat", 9, "nodes: got 9, allowed are 10 to 400"),
+        ("dat", 401, "nodes: got 401, allowed are 10 to 400"),
+        ("yaml", 30, "nodes: got 30, only AeroDyn's blades have nodes of their own"),
+    ],
+)
+def test_nodes_that_cannot_be_are_refused(tmp_path, suffix, nodes, told):
+    with pytest.raises(ExportError, match=told):
+        bg.write(tenth(), tmp_path / f"blade.{suffix}", nodes=nodes)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_polars_that_go_leave_no_files_behind(tmp_path):

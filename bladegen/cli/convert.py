@@ -36,6 +36,12 @@ def convert(
     polars: Polars = None,
     reynolds: Reynolds = None,
     airfoils: Airfoils = None,
+    nodes: Annotated[
+        int | None,
+        typer.Option(
+            help="Of AeroDyn's blade file, even over span; as many as 0.5 mm needs if not given."
+        ),
+    ] = None,
     hub_radius: Annotated[
         str | None,
         typer.Option(
@@ -65,7 +71,9 @@ def convert(
             definition = replace(definition, rotor=replace(definition.rotor, hub_radius=given))
         ways: dict[str, Any] = {"polars": polars, "reynolds": reynolds, "progress": progress}
         if into is None:
-            findings = write(definition, target, format=row.name, command=COMMAND.get(), **ways)
+            findings = write(
+                definition, target, format=row.name, command=COMMAND.get(), nodes=nodes, **ways
+            )
             title = row.title
         else:
             kept: tuple[Finding, ...] = ()
@@ -73,7 +81,9 @@ def convert(
                 definition, kept = with_polars_of(definition, into)
             whole, said = prepared(definition, **ways)
             progress(f"writing {target}")
-            findings = kept + said + write_into(whole, into, target, command=COMMAND.get())
+            findings = (
+                kept + said + write_into(whole, into, target, nodes=nodes, command=COMMAND.get())
+            )
             title = f"into {into}"
     print_table(
         ["", "format", "file"],

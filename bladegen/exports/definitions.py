@@ -28,6 +28,7 @@ def write(
     format: str | None = None,  # noqa: A002
     polars: str | None = None,
     reynolds: float | None = None,
+    nodes: int | None = None,
     progress: Callable[[str], None] = lambda _: None,
     command: str = "",
 ) -> tuple[Finding, ...]:
@@ -46,6 +47,8 @@ def write(
         NeuralFoil is installed, and all others kept as they are.
     reynolds : float, optional
         The Reynolds number of estimated polars.
+    nodes : int, optional
+        Of AeroDyn's blade file: as many, even over the span; as many as it takes if not given.
     progress : callable
         Told what is being done.
     command : str
@@ -65,7 +68,7 @@ def write(
     """
     must = "a Blade, or a BladeDefinition such as bladegen.read('iea15mw') gives"
     instance(what, (Blade, BladeDefinition), "what", must, ExportError)
-    given = {"polars": polars, "reynolds": reynolds}
+    given = {"polars": polars, "reynolds": reynolds, "nodes": nodes}
     told = {key: str(value) for key, value in given.items() if value is not None}
     return writing.write(
         what,
@@ -73,20 +76,26 @@ def write(
         format=format,
         polars=polars,
         reynolds=reynolds,
+        nodes=nodes,
         progress=progress,
         mark=marking(made_from(what, told, command)),
     )
 
 
 def write_into(
-    definition: BladeDefinition, turbine: Path, path: Path, *, command: str = ""
+    definition: BladeDefinition,
+    turbine: Path,
+    path: Path,
+    *,
+    nodes: int | None = None,
+    command: str = "",
 ) -> tuple[Finding, ...]:
     """Write a model of a tool with its blade replaced (`formats.into.write_into`).
 
     A model that stays the same to the byte says no more than before.
     """
     made = made_from(definition, {"into": turbine.name}, command)
-    return into.write_into(definition, turbine, path, marking(made))
+    return into.write_into(definition, turbine, path, marking(made), nodes)
 
 
 def marking(made: Provenance) -> Marking:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bladegen.definition.blade_definition import BladeDefinition
-from bladegen.errors import DefinitionError, Finding
+from bladegen.errors import DefinitionError, ExportError, Finding
 from bladegen.formats.common.document import Notes
 
-__all__ = ["GRID", "Format", "PutBack", "Reader", "Writer"]
+__all__ = ["GRID", "Format", "PutBack", "Reader", "Writer", "with_nodes"]
 
 WHOLE = 5e-6  # m; formats with a grid for each quantity hold a blade to 1e-6, where they can
 GRID = 1.5e-3  # m; formats with one grid are within 0.3 or 0.5 mm of each quantity
@@ -68,15 +68,18 @@ class Writer:
     tolerance : float, optional
         How far a blade may be off that is read back [m] without a finding; None for formats that
         hold no blade.
+    nodes : bool
+        Whether `write` takes how many nodes there shall be, as ``nodes=``.
     """
 
     name: str
     title: str
     suffixes: tuple[str, ...]
-    write: Callable[[BladeDefinition, Path], tuple[Finding, ...]]
+    write: Callable[..., tuple[Finding, ...]]
     polars: bool = False
     tolerance: float | None = WHOLE
     structure: bool = False
+    nodes: bool = False
 
     def __post_init__(self) -> None:
         if self.suffixes != ("",):
@@ -96,14 +99,35 @@ class PutBack:
         everything else as it is, and returns what it cannot hold.
     tolerance : float
         How far a blade may be off that is read back [m] without a finding.
+    nodes : bool
+        Whether `write` takes how many nodes there shall be, as ``nodes=``.
     """
 
     suffixes: tuple[str, ...]
-    write: Callable[[BladeDefinition, Path, Path], tuple[Finding, ...]]
+    write: Callable[..., tuple[Finding, ...]]
     tolerance: float = WHOLE
+    nodes: bool = False
 
     def __post_init__(self) -> None:
         _require_suffixes(self.suffixes, "put_back")
+
+
+def with_nodes(way: Writer | PutBack, nodes: int | None) -> dict[str, int]:
+    """Return what a way to write is told of nodes.
+
+    Raises
+    ------
+    ExportError
+        If nodes are given and the format has none.
+    """
+    if nodes is None:
+        return {}
+    if not way.nodes:
+        raise ExportError(
+            f"nodes: got {nodes}, only AeroDyn's blades have nodes of their own; leave it out for "
+            f"{', '.join(suffix or 'a folder' for suffix in way.suffixes)}"
+        )
+    return {"nodes": nodes}
 
 
 @dataclass(frozen=True)

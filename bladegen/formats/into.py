@@ -8,7 +8,7 @@ import numpy as np
 
 from bladegen.definition.blade_definition import Airfoil, BladeDefinition, Station
 from bladegen.errors import FileError, Finding
-from bladegen.formats.format import Format, PutBack
+from bladegen.formats.format import Format, PutBack, with_nodes
 from bladegen.formats.proof import (
     Marking,
     marked,
@@ -29,7 +29,11 @@ LARGEST = 2**28  # bytes; the readers of models have lower bounds of their own
 
 
 def write_into(
-    definition: BladeDefinition, turbine: Path, path: Path, mark: Marking = unmarked
+    definition: BladeDefinition,
+    turbine: Path,
+    path: Path,
+    mark: Marking = unmarked,
+    nodes: int | None = None,
 ) -> tuple[Finding, ...]:
     """Write a model of a tool with its blade replaced, in the format that it is in.
 
@@ -45,6 +49,8 @@ def write_into(
     mark : callable
         Marks the files that were written, before they are read back; a model that is the same as
         before to the byte stays so.
+    nodes : int, optional
+        Of AeroDyn's blade file: as many, even over the span; as many as it takes if not given.
 
     Returns
     -------
@@ -64,6 +70,7 @@ def write_into(
         raise FileError(str(turbine), [f"{is_what}, {must}"])
     own = turbine.suffix.lower()
     row, way = _way(own)
+    told = with_nodes(way, nodes)
     require_suffix(path, way.suffixes if own in way.suffixes else (own,))
     before = content_of(turbine, LARGEST) if turbine.is_file() else b""
 
@@ -71,7 +78,7 @@ def write_into(
         mark(file for file in files if file.name != path.name or file.read_bytes() != before)
 
     def write(target: Path) -> tuple[Finding, ...]:
-        return way.write(definition, turbine, target)
+        return way.write(definition, turbine, target, **told)
 
     if row.alone:
         with put_in_place(path) as draft:

@@ -11,7 +11,7 @@ from bladegen.errors import ExportError, Finding
 from bladegen.formats import registry
 from bladegen.formats.airfoils.writing import write_airfoil
 from bladegen.formats.common.redefinition import redefined
-from bladegen.formats.format import Writer
+from bladegen.formats.format import Writer, with_nodes
 from bladegen.formats.proof import Marking, marked, proven, unmarked
 from bladegen.support.arguments import instance, path_of, suggestion
 from bladegen.support.files import require_suffix
@@ -35,6 +35,7 @@ def write(
     format: str | None = None,  # noqa: A002
     polars: str | None = None,
     reynolds: float | None = None,
+    nodes: int | None = None,
     progress: Callable[[str], None] = lambda _: None,
     mark: Marking = unmarked,
 ) -> tuple[Finding, ...]:
@@ -53,6 +54,8 @@ def write(
         NeuralFoil is installed, and all others kept as they are.
     reynolds : float, optional
         The Reynolds number of estimated polars.
+    nodes : int, optional
+        Of AeroDyn's blade file: as many, even over the span; as many as it takes if not given.
     progress : callable
         Told what is being done.
     mark : callable
@@ -72,14 +75,15 @@ def write(
     """
     path = path_of(path, "path", ExportError)
     row = format_of(path, format)
+    draw = partial(row.write, **with_nodes(row, nodes))
     definition, said = prepared(
         what, polars=polars if row.polars else "keep", reynolds=reynolds, progress=progress
     )
     said = (said if row.polars else ()) + _left_out(definition, row, polars)
     mark = mark if row in FORMATS else unmarked  # those of plug-ins stay as they are
     if row.tolerance is None:
-        return said + marked(partial(row.write, definition), path, mark)
-    return said + proven(partial(row.write, definition), path, definition, row.tolerance, mark)
+        return said + marked(partial(draw, definition), path, mark)
+    return said + proven(partial(draw, definition), path, definition, row.tolerance, mark)
 
 
 def _left_out(definition: BladeDefinition, row: Writer, polars: str | None) -> tuple[Finding, ...]:

@@ -13,7 +13,7 @@ from bladegen.blade.blade import Blade
 from bladegen.definition.blade_definition import BladeDefinition, Distribution, pchip, united
 from bladegen.support.arrays import Array, ArrayLike
 
-__all__ = ["MOST_NODES", "TOLERANCE", "common_grid", "shape_grid"]
+__all__ = ["MOST_NODES", "TOLERANCE", "common_grid", "lost", "shape_grid"]
 
 TOLERANCE = 3e-4  # m, of any one quantity
 SHAPE_TOLERANCE = 1e-3  # m, of a chord of the curve that a surface point runs over span on: the
@@ -54,6 +54,18 @@ def common_grid(
         The grid, and the largest deviation of a quantity left between its points [m].
     """
     quantities = _quantities(definition)
+    error = _error(definition, over_z)
+    return _halved(_united(definition, quantities, also), error, tolerance)
+
+
+def lost(definition: BladeDefinition, grid: Array, *, over_z: bool = False) -> float:
+    """Return the largest deviation [m] of a quantity between the points of a grid (m,)."""
+    return float(_error(definition, over_z)(grid).max())
+
+
+def _error(definition: BladeDefinition, over_z: bool) -> Callable[[Array], Array]:
+    """Return what tells how far off a grid (m,) leaves quantities in its intervals (m - 1,) [m]."""
+    quantities = _quantities(definition)
     along = (
         definition.axis.z if over_z else Distribution(np.array([0.0, 1.0]), np.array([0.0, 1.0]))
     )
@@ -73,7 +85,7 @@ def common_grid(
             worst = np.maximum(worst, np.abs(turned).max(axis=1))
         return worst
 
-    return _halved(_united(definition, quantities, also), error, tolerance)
+    return error
 
 
 def shape_grid(blade: Blade, grid: Array) -> Array:

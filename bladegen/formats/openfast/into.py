@@ -24,7 +24,9 @@ NEEDED = ("NumAFfiles", "AFNames", "ADBlFile(1)")
 _ENTRY = re.compile(r"(\s*)(\"[^\"]*\"|'[^']*'|\S+)(\s+)([\w()]+)(?=\s|$)(.*)")
 
 
-def write_into_main(definition: BladeDefinition, main: Path, path: Path) -> tuple[Finding, ...]:
+def write_into_main(
+    definition: BladeDefinition, main: Path, path: Path, nodes: int | None = None
+) -> tuple[Finding, ...]:
     """Write AeroDyn's main input with another blade, and that blade's files beside it.
 
     Parameters
@@ -35,6 +37,8 @@ def write_into_main(definition: BladeDefinition, main: Path, path: Path) -> tupl
         AeroDyn's main input.
     path : Path
         Where to; may be `main` itself.
+    nodes : int, optional
+        As many, even over the span; as many as the tolerance needs if not given.
 
     Returns
     -------
@@ -55,7 +59,7 @@ def write_into_main(definition: BladeDefinition, main: Path, path: Path) -> tupl
         raise FileError(str(main), [f"is no main input of AeroDyn: {', '.join(missing)} missing"])
     require_polars(definition, path, "AeroDyn")
     blade = path.with_name(f"{path.stem}{PUT_BACK}.dat")
-    new, findings = openfast.parts(definition, blade)
+    new, findings = openfast.parts(definition, blade, nodes)
     write_lines(path, _replaced(lines, new, blade.name), end)
     said = [finding for finding in findings if finding.where != "AFNames"]
     if path.parent.resolve() != main.parent.resolve():

@@ -22,16 +22,20 @@ def _read(path: Path, notes: Notes, airfoils: Path | None) -> BladeDefinition | 
     return read(path, notes, airfoils)
 
 
-def _write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
+def _write(
+    definition: BladeDefinition, path: Path, nodes: int | None = None
+) -> tuple[Finding, ...]:
     from bladegen.formats.openfast.writing import write
 
-    return write(definition, path)
+    return write(definition, path, nodes)
 
 
-def _into(definition: BladeDefinition, main: Path, path: Path) -> tuple[Finding, ...]:
+def _into(
+    definition: BladeDefinition, main: Path, path: Path, nodes: int | None = None
+) -> tuple[Finding, ...]:
     from bladegen.formats.openfast.into import write_into_main
 
-    return write_into_main(definition, main, path)
+    return write_into_main(definition, main, path, nodes)
 
 
 FORMAT = Format(
@@ -43,6 +47,6 @@ FORMAT = Format(
         _recognises,
         _read,
     ),
-    (Writer("openfast", "OpenFAST (AeroDyn blade)", (".dat",), _write, True, GRID),),
-    put_back=PutBack((".dat",), _into, GRID),
+    (Writer("openfast", "OpenFAST (AeroDyn blade)", (".dat",), _write, True, GRID, nodes=True),),
+    put_back=PutBack((".dat",), _into, GRID, nodes=True),
 )

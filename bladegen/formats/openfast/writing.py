@@ -20,10 +20,10 @@ from bladegen.definition.blending import without_polars
 from bladegen.definition.conventions import line_of_axis, slope_degrees
 from bladegen.definition.estimates import force_centre
 from bladegen.definition.thickness import ruled
-from bladegen.errors import Finding
+from bladegen.errors import ExportError, Finding
 from bladegen.formats.airfoils.folder_reading import companion
 from bladegen.formats.common.number_text import aligned, few, write_lines
-from bladegen.formats.common.resampling import common_grid, shape_grid
+from bladegen.formats.common.resampling import MOST_NODES, common_grid, lost, shape_grid
 from bladegen.formats.openfast.model import PART_SUFFIX
 from bladegen.formats.openfast.polar_writing import Tables, info, part, tables_at
 from bladegen.formats.openfast.reading import TWIST_SUFFIX
@@ -34,15 +34,16 @@ __all__ = ["parts", "write"]
 
 LANDMARKS = 401
 SAME_SHAPE = 1e-12  # chords; nodes nearer than this share an airfoil
+FEWEST_NODES = 10  # of those that are asked for
 TOLERANCE = 5e-4  # m; of a grid of about a hundred nodes, which AeroDyn still runs at ease
 
 
-def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
+def write(definition: BladeDefinition, path: Path, nodes: int | None = None) -> tuple[Finding, ...]:
     """Write a blade for OpenFAST: the blade file at `path`, the others beside it.
 
     Returns what the files cannot hold.
     """
-    lines, findings = parts(definition, path)
+    lines, findings = parts(definition, path, nodes)
     listing = path.with_name(f"{path.stem}{PART_SUFFIX}")
     if lines:
         write_lines(listing, lines)
@@ -51,15 +52,17 @@ def write(definition: BladeDefinition, path: Path) -> tuple[Finding, ...]:
     return findings
 
 
-def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Finding, ...]]:
+def parts(
+    definition: BladeDefinition, path: Path, nodes: int | None = None
+) -> tuple[list[str], tuple[Finding, ...]]:
     """Write a blade's files but for the lines of AeroDyn's main input that name them.
 
+    Nodes are even over the span if their number is given, else as many as the tolerance needs.
     Returns these lines, none without polars, and what the files cannot hold.
     """
     given, definition = definition, ruled(definition)
-    eta, _ = common_grid(definition, TOLERANCE, over_z=True)
     blade = Blade.from_definition(definition, landmarks=LANDMARKS)
-    eta, loss = common_grid(definition, TOLERANCE, over_z=True, also=shape_grid(blade, eta))
+    eta, loss = _nodes(definition, blade, nodes)
     profiles = blade.profiles(eta)
     thickness = blade.splines.fit(profiles).relative_thickness
     tables = tables_at(definition, eta.tolist())
@@ -99,6 +102,17 @@ def parts(definition: BladeDefinition, path: Path) -> tuple[list[str], tuple[Fin
     found = _findings(given, len(eta), int(ids[-1]), loss, airfoils.name)
     listing = f"{path.stem}{PART_SUFFIX}"
     return lines, (*found, *_polar_findings(definition, tables, listing))
+
+
+def _nodes(definition: BladeDefinition, blade: Blade, count: int | None) -> tuple[Array, float]:
+    """Return the span fractions of nodes, and what is lost between them [m]."""
+    if count is None:
+        eta, _ = common_grid(definition, TOLERANCE, over_z=True)
+        return common_grid(definition, TOLERANCE, over_z=True, also=shape_grid(blade, eta))
+    if not FEWEST_NODES <= count <= MOST_NODES:
+        raise ExportError(f"nodes: got {count}, allowed are {FEWEST_NODES} to {MOST_NODES}")
+    eta = np.linspace(0.0, 1.0, count)
+    return eta, lost(definition, eta, over_z=True)
 
 
 def _blade(definition: BladeDefinition, eta: Array, ids: Array, reference: Array) -> list[str]:

@@ -25,6 +25,7 @@ from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.surface.grids.grid import Spacing, from_blade
 from bladegen.surface.tips import TIPS, flat_tip, round_tip
+from bladegen.surface.volumes import volume as volumes
 from bladegen.surface.volumes import volume_files
 from bladegen.surface.volumes.front import front_of
 from bladegen.surface.volumes.volume import Extrusion, volume_of
@@ -98,6 +99,26 @@ def test_figures_are_those_measured_here(volume):
     assert figures["cells"] == sum(np.prod(np.subtract(p.shape[:3], 1)) for p in blocks)
     assert figures["cells_not_positive"] == 0
     assert 0.1 < figures["smallest_scaled_jacobian"] < 1.0
+
+
+def test_the_place_of_the_largest_skewness_is_told(blade, volume):
+    """A point moved through the layers beyond it skews the cells around it."""
+    off, place = volume.figures["largest_skewness_at"]
+    away = np.linalg.norm(volume.layers[-2] - volume.layers[0], axis=1)
+    assert 0.0 <= off <= away.max()
+    assert re.fullmatch(r"the [a-z ]+ at [\d.]+ % span", place)
+    layers, (i, j), middle = volume.layers.copy(), (10, 12), len(volume.layers) // 2
+    moved = volume.front.numbers[0][i, j]
+    layers[middle, moved] += 6.0 * (layers[middle + 1, moved] - layers[middle, moved])
+    bent = replace(volume, layers=layers).figures
+    eta = 100.0 * volume.grid.blocks[0].eta[[i - 1, i, i + 1], j]
+    off, place = bent["largest_skewness_at"]
+    assert bent["largest_skewness"] > 1.1 * volume.figures["largest_skewness"]
+    side, at = re.fullmatch(r"the (.*) at ([\d.]+) % span", place).groups()
+    assert side == volume.grid.blocks[0].name
+    assert min(abs(eta - float(at))) < 0.1
+    away = np.linalg.norm(layers[[middle, middle + 1], moved] - layers[0, moved], axis=1)
+    assert 0.0 < off < away.max()
 
 
 def test_cells_fill_what_lies_between_wall_far_field_and_root(volume):
@@ -177,9 +198,11 @@ def test_the_main_figures_are_shown(volume):
     rows = dict(volume_rows(volume.figures))
     assert rows["volume"] == f"{volume.figures['cells']} cells in {len(volume.layers) - 1} layers"
     assert rows["volume's first cells"] == "0.2000 mm high"
-    bad = volume.figures | {"largest_skewness": 7.09, "reynolds": 1.2e7}
+    place = [12.3, "the trailing edge at 0.8 % span"]
+    worse = {"largest_skewness": 7.09, "largest_skewness_at": place, "reynolds": 1.2e7}
+    bad = volume.figures | worse
     assert dict(volume_rows(bad))["volume's largest skewness"] == (
-        "7.1, above the 4 that checkMesh allows"
+        "7.1, above the 4 that checkMesh allows, 12 m off the trailing edge at 0.8 % span"
     )
     assert "Reynolds number of 1.2e+07" in dict(volume_rows(bad))["volume's first cells"]
 
@@ -209,7 +232,7 @@ def test_what_would_fold_is_refused_with_its_place(blade):
     grid = from_blade(blade, COARSE)
     thick = Extrusion(first_height=1.0, growth=1.5, distance=200.0, smoothing=0.5)
     with pytest.raises(
-        GeometryError, match=r"would fold in layer \d+, .* m off the .* % span; give --distance"
+        GeometryError, match=r"would fold in layer 1, 0 m off the .* % span; give a smaller --first"
     ):
         volume_of(blade, grid, thick)
     fine = from_blade(blade, replace(COARSE, around=131))
@@ -218,6 +241,10 @@ def test_what_would_fold_is_refused_with_its_place(blade):
     fine = from_blade(blade, replace(COARSE, edge=18))
     with pytest.raises(GeometryError, match=r"across the trailing edge: --grid-edge 16"):
         volume_of(blade, fine, thick)
+
+
+def test_what_folds_far_out_may_end_before():
+    assert volumes._instead(COARSE, 2.04).startswith("--distance 2m, another --smoothing")
 
 
 def test_a_surface_that_is_folded_is_refused(blade):

@@ -235,7 +235,8 @@ def volume_rows(volume: dict[str, Any]) -> list[list[str]]:
     number = volume.get("reynolds")
     by = "" if number is None else f", by y+ at a Reynolds number of {number:.3g}"
     skewed, leaning = volume["largest_skewness"], volume["largest_non_orthogonality_deg"]
-    beyond = f", above the {SKEWED:g} that checkMesh allows" if skewed > SKEWED else ""
+    where = "{:.2g} m off {}".format(*volume["largest_skewness_at"])
+    beyond = f", above the {SKEWED:g} that checkMesh allows, {where}" if skewed > SKEWED else ""
     return [
         ["volume", f"{volume['cells']} cells in {volume['layers']} layers"],
         ["volume's first cells", f"{digits(1e3 * first, 3)} mm high{by}"],

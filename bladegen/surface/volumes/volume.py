@@ -148,7 +148,12 @@ class Volume:
         asked = {"first_height_asked_m": self.first_height, "growth_asked": self.growth}
         if self.reynolds is not None:
             asked["reynolds"] = self.reynolds
-        return asked | figures_of(self.front, self.layers, counts)
+        found = figures_of(self.front, self.layers, counts)
+        layer, cell = found.pop("largest_skewness_cell")
+        corners = self.front.cells[cell]
+        off = np.linalg.norm(self.layers[layer, corners] - self.layers[0, corners], axis=1)
+        place = _place(self.grid, self.front.cells, cell)
+        return asked | found | {"largest_skewness_at": [float(off.mean()), place]}
 
     def block(self, number: int) -> Array:
         """Return the points (ni, nj, nk, 3) of a block."""

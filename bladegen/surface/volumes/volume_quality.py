@@ -39,13 +39,14 @@ def figures_of(front: Front, layers: Array, families: list[tuple[str, int]]) -> 
     """Measure the volume between layers (m, p, 3).
 
     `families` are the names of the surface's blocks and how many cells of the front each has.
+    The cell of the largest skewness is told by its layer and its number on the front.
     """
     around, beside = _Around.of(front), front.sides()[1]
     jacobian, scaled, smallest, low = np.inf, [], np.inf, 0
     angles, skewed = [], []
     floor = _Faces.of(layers[0][front.cells])
     before: Array | None = None
-    for inner, outer in pairwise(layers):
+    for layer, (inner, outer) in enumerate(pairwise(layers)):
         corners, parts = _jacobians(inner, outer, front.cells)
         roof = _Faces.of(outer[front.cells])
         walls = _Faces.of(
@@ -60,7 +61,9 @@ def figures_of(front: Front, layers: Array, families: list[tuple[str, int]]) -> 
         if before is not None:
             found.append(floor.seen(before, centres))
         angles += [turned for turned, _ in found]
-        skewed += [float(off.max()) for _, off in found]
+        for (_, off), own in zip(found, (beside[:, 0], np.arange(len(centres))), strict=False):
+            worst_face = int(np.argmax(off))
+            skewed.append((float(off[worst_face]), layer, int(own[worst_face])))
         floor, before = roof, centres
     every, steps = np.concatenate(angles), np.linalg.norm(np.diff(layers, axis=0), axis=2)
     away = np.linalg.norm(layers[-1] - layers[0], axis=1)
@@ -89,7 +92,8 @@ def figures_of(front: Front, layers: Array, families: list[tuple[str, int]]) -> 
         "largest_non_orthogonality_deg": float(np.degrees(every.max())),
         "mean_non_orthogonality_deg": float(np.degrees(np.arccos(np.cos(every).mean()))),
         "faces_over_70_deg": int(np.count_nonzero(every > np.radians(70.0))),
-        "largest_skewness": max(skewed),
+        "largest_skewness": max(skewed)[0],
+        "largest_skewness_cell": list(max(skewed)[1:]),
     }
 
 

@@ -56,6 +56,18 @@ def test_the_figure_shows_the_contours_with_teeth_on_them():
         assert_allclose(dx * ny - dy * nx, 0.0, atol=1e-12)
 
 
+def test_of_many_airfoils_the_roughest_are_drawn_in_their_order(monkeypatch):
+    monkeypatch.setattr(combs, "MOST", 3)
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=51)
+    figures = sorted(combs.figures(blade), key=lambda one: -one["roughness_given"])[:3]
+    drawn = combs.drawing(blade)
+    names = [axis.get_title().partition(":")[0] for axis in drawn.axes]
+    assert set(names) == {one["airfoil"] for one in figures}
+    assert names == [name for name in combs._pairs(blade) if name in names]
+    assert "the 3 roughest airfoils" in drawn.get_suptitle()
+    assert sum(axis.get_legend() is not None for axis in drawn.axes) == 1
+
+
 def test_an_unfaired_blade_is_as_rough_as_given():
     blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=51, fairing=None)
     for one in combs.figures(blade):

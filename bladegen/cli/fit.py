@@ -153,23 +153,26 @@ def _print_bands(fitted: Any) -> None:
         for band in fitted.bands()
     ]
     print_table(["span, %", "largest, mm", "99 %, mm", "RMS, mm", "mean (outside +), mm"], rows)
+    places = fitted.places()
     rows = [
         [
             f"{place.eta:.4f}",
             f"{100 * airfoil.relative_thickness:.2f}",
-            ", ".join(f"{t:.3f}" for t in place.coordinates),
+            *(f"{t:.3f}" for t in place.coordinates),
             f"{place.distance:.3f}",
             f"{place.spread:.1f}",
-            f"{place.nearest}, {place.away:.3f}",
+            f"{place.away:.3f}",
+            place.nearest,
         ]
         for place, airfoil in zip(
-            fitted.places(), (s.airfoil for s in fitted.definition.stations), strict=True
+            places, (s.airfoil for s in fitted.definition.stations), strict=True
         )
     ]
+    modes = [f"t{k + 1}" for k in range(len(places[0].coordinates))] if places else []
     print_table(
-        ["eta", "thickness, %", "t, rad", "off the space, rad", "spread", "nearest, rad"],
+        ["eta", "t/c, %", *modes, "off", "spread", "away", "nearest airfoil"],
         rows,
-        title="airfoils",
+        title="airfoils: t, off the space and away from the nearest in rad",
     )
 
 

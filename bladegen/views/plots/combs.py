@@ -24,6 +24,7 @@ HEIGHT = 0.25  # of chord: the tooth at the largest curvature that is drawn
 LARGEST = 98.0  # per cent of the faired teeth are drawn to scale, longer ones are cut
 AS_GIVEN, FAIRED = BASELINE, VARIANT  # colours
 COLUMNS = 3
+MOST = 12  # airfoils that are drawn; the report has the figures of all
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +91,12 @@ def draw(blade: Blade, path: Path) -> None:
 def drawing(blade: Blade, _baseline: Blade | None = None) -> Any:
     """Return a figure of the combs of a blade's airfoils, as given and as faired.
 
-    A perturbation leaves a blade the airfoils of its baseline, so there is one of each.
+    A perturbation leaves a blade the airfoils of its baseline, so there is one of each; of many,
+    those are drawn that are roughest as given, in their order.
     """
-    curves = _pairs(blade)
+    every = _pairs(blade)
+    roughest = sorted(every, key=lambda name: roughness(every[name][0]), reverse=True)[:MOST]
+    curves = {name: pair for name, pair in every.items() if name in roughest}
     rows = max(1, -(-len(curves) // COLUMNS))
     drawn, axes = figure(rows, COLUMNS, width=5.2 * COLUMNS, height=3.6 * rows + 0.4)
     for axis, (name, pair) in zip(axes.flat, curves.items(), strict=False):
@@ -111,13 +115,15 @@ def drawing(blade: Blade, _baseline: Blade | None = None) -> Any:
         axis.set_title(f"{name}: {before:.3g} to {after:.3g}", fontsize=9)
         axis.set(xlabel="x, chords", ylabel="y, chords", aspect="equal")
         axis.tick_params(labelsize=7)
-        axis.legend(fontsize=7, loc="lower right")
+        if axis is axes.flat[0]:
+            axis.legend(fontsize=7, loc="lower right")
     for axis in axes.flat[len(curves) :]:
         axis.remove()
+    which = "the airfoils" if len(curves) == len(every) else f"the {MOST} roughest airfoils"
     return titled(
         drawn,
         blade,
-        f"curvature combs of the airfoils behind {100 * NOSE:.0f} % chord, and the total variation "
+        f"curvature combs of {which} behind {100 * NOSE:.0f} % chord, and the total variation "
         "of curvature, as given to as faired [1/chord]",
     )
 

@@ -98,6 +98,9 @@ def test_build_makes_grids_as_asked_for(tmp_path):
         ("stl", ["--stations", "50", "--tolerance", "1mm"], ["--tolerance"]),
         ("volume.cgns", ["--reynolds", "1e7", "--distance", "2m"], ["--reynolds"]),
         ("volume.cgns", ["--reynolds", "1e7", "--y-plus", "1"], []),
+        ("volume.cgns", ["--grid-edge", "16"], []),
+        ("volume.cgns", ["--grid-edge", "72"], []),
+        ("stl", ["--grid-edge", "16"], ["--grid-edge"]),
         ("yaml", ["--polars", "none", "--element", "2m"], ["--element"]),
     ],
 )
@@ -108,6 +111,23 @@ def test_options_that_change_no_file_are_named(formats, options, idle, monkeypat
     run("build", "nrel5mw", "-o", "x", "--landmarks", "51", "--format", formats, *options)
     assert [line.partition(":")[0] for line in said] == idle
     assert all(f"none of the files asked for ({formats.replace(',', ', ')})" in s for s in said)
+
+
+@pytest.mark.parametrize(
+    ("formats", "options", "edge"),
+    [
+        ("cgns", [], 72),
+        ("cgns,volume.cgns", [], 16),
+        (".VOLUME.P3D", [], 16),
+        ("volume.foam.zip", ["--grid-edge", "30"], 30),
+        ("p3d", ["--grid-edge", "30"], 30),
+    ],
+)
+def test_volumes_grow_from_fewer_cells_across_the_edge(formats, options, edge, monkeypatch):
+    made = []
+    monkeypatch.setattr(build, "_build", lambda *given: made.append(given[3]))
+    run("build", "nrel5mw", "-o", "x", "--landmarks", "51", "--format", formats, *options)
+    assert [one.spacing.edge for one in made] == [edge]
 
 
 def test_build_that_misses_its_tolerance_ends_with_1(tmp_path, monkeypatch):

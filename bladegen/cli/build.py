@@ -68,7 +68,8 @@ def build(
     ] = None,
 ) -> None:
     """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
-    options, suffixes = producing.options(), suffixes_of(formats)
+    suffixes = suffixes_of(formats)
+    options = producing.options(suffixes)
     made = making.blade(blade, landmarks)
     made = made.mirror_image() if mirror else made
     whole = None
@@ -109,7 +110,8 @@ def perturb(
             f"perturb: nothing is to change; give --pga, --thickness, --twist or another change, "
             f"or make the blade as it is: bladegen build {blade} -o {output}"
         )
-    options, suffixes = producing.options(), suffixes_of(formats)
+    suffixes = suffixes_of(formats)
+    options = producing.options(suffixes)
     made = changes.applied(making.blade(blade, landmarks))
     made = made.mirror_image() if mirror else made
     suffixes = _with(suffixes, {CURVES: curves, STRUCTURE: structure})

@@ -170,7 +170,7 @@ def family(
         output,
         suffixes,
         "float64" if double else "float32",
-        producing.options(),
+        producing.options(suffixes),
         graph,
         tuple(word.strip().lower() for text in label or [] for word in text.split(",")),
     )

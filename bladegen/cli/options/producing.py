@@ -17,6 +17,7 @@ __all__ = ["PRODUCING", "Producing"]
 
 TOLERANCE = "0.3mm"
 LIGHT, LIGHT_BYTES = "1mm", 2_000_000
+EDGE, EDGE_OF_VOLUMES = 72, 16  # cells across the trailing edge and the tip
 GRIDS = "Structured grids: p3d, fmt, cgns, vtu"
 VOLUMES = "Volumes on structured grids: volume.cgns, volume.p3d, volume.fmt, volume.foam.zip"
 
@@ -91,11 +92,13 @@ class Producing:
         int, typer.Option(help="Points from root to tip.", rich_help_panel=GRIDS)
     ] = 165
     grid_edge: Annotated[
-        int,
+        int | None,
         typer.Option(
-            help="Cells across the trailing edge and the tip, even.", rich_help_panel=GRIDS
+            help="Cells across the trailing edge and the tip, even.",
+            rich_help_panel=GRIDS,
+            show_default="72; 16 where a volume is among the formats",
         ),
-    ] = 72
+    ] = None
     le_spacing: Annotated[float, _spacing(help=SIDE)] = 1e-3
     te_spacing: Annotated[float | None, _coupled(help=SIDE)] = None
     tip_spacing: Annotated[float | None, _coupled(help=SPAN)] = None
@@ -135,8 +138,11 @@ class Producing:
     polars: Polars = None
     reynolds: Reynolds = None
 
-    def options(self) -> Any:
-        """Return how products are made."""
+    def options(self, suffixes: Sequence[str] = ()) -> Any:
+        """Return how products are made, for files of some suffixes among others.
+
+        A volume does not grow from edges' cells as narrow as a surface alone may have.
+        """
         from bladegen.cli.options.parsing import metres
         from bladegen.exports.options import Options
         from bladegen.surface.grids.grid import Spacing
@@ -147,6 +153,8 @@ class Producing:
             raise BladegenError(
                 f"--tolerance: got {self.tolerance}, but --light takes {LIGHT}; leave one out"
             )
+        volume = any(suffix.lower().lstrip(".").startswith("volume.") for suffix in suffixes)
+        edge = (EDGE_OF_VOLUMES if volume else EDGE) if self.grid_edge is None else self.grid_edge
         tolerance = LIGHT if self.light else self.tolerance or TOLERANCE
         return Options(
             tolerance=metres(tolerance, "tolerance"),
@@ -174,7 +182,7 @@ class Producing:
             spacing=Spacing(
                 around=self.grid_around,
                 along=self.grid_along,
-                edge=self.grid_edge,
+                edge=edge,
                 leading_edge=self.le_spacing,
                 trailing_edge=self.te_spacing,
                 tip=self.tip_spacing,
@@ -189,9 +197,12 @@ class Producing:
         """
         made, found = self.options(), []
         for field in fields(self):
-            if getattr(self, field.name) == field.default:
+            given, other = getattr(self, field.name), field.default
+            if given == other:
                 continue
-            plain = Producing(**(vars(self) | {field.name: field.default}))
+            if field.name == "grid_edge":  # whose default may be what is given
+                other = given + 2
+            plain = Producing(**(vars(self) | {field.name: other}))
             with suppress(BladegenError):  # of two that go together, and so change something
                 without = plain.options()
                 if all(made.settings(*one) == without.settings(*one) for one in files):

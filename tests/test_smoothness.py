@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import bladegen as bg
-from bladegen.measures.smoothness import creases
+from bladegen.measures.smoothness import creases, steps
 from strategies import by_day
 
 
@@ -68,3 +68,18 @@ def test_variants_do_not_step_where_a_nose_hands_over_to_another(name, t, thickn
     fine, _ = bends(variant, at + np.linspace(-0.001, 0.001, 65))  # 16 times as near
     assert fine < coarse / 16.0
     assert fine < 3e-4  # [m] in 3 mm to 4 mm of span
+
+
+@pytest.mark.parametrize("name", bg.bundled())
+def test_published_blades_have_no_steps(name):
+    assert steps(bg.Blade.from_definition(bg.read(name))) == []
+
+
+def test_a_step_where_noses_compete_is_found():
+    blade = bg.Blade.from_definition(bg.read("iea15mw"))
+    t = [0.07457092262601152, 0.00102199978182673, 0.03947326178223441, -0.005823688115812977]
+    (found,) = steps(blade.perturbed(bg.ShapeSpace.bundled(), t))
+    eta, change, times = found
+    assert 0.262 < eta < 0.264
+    assert 1e-3 < change < 1e-2
+    assert times > 20.0

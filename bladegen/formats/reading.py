@@ -24,6 +24,7 @@ BY_AIRFOILS = Finding(
 )
 
 
+REPORT = ".report.json"  # of what bladegen built
 FEW, MANY = 3, 1000  # files of a folder that are named, and looked at
 OWN = tuple(row.reader for row in FORMATS if row.reader is not None)
 SUFFIXES = tuple(dict.fromkeys(suffix for reader in OWN for suffix in reader.suffixes))
@@ -149,7 +150,8 @@ def _recognised(path: Path) -> tuple[str, Reader]:
             marks.append(f"{reader.mark} ({name})")
     must = " or ".join(marks)
     others = (path.with_name(name) for name in _blades(path.parent) if name != path.name)
-    there = [other.name for other in islice(others, MANY) if holds_blade(other)][:FEW]
+    named = (other for other in islice(others, MANY) if not other.name.endswith(REPORT))
+    there = [other.name for other in named if holds_blade(other)][:FEW]
     near = f"; beside it there is one in {', '.join(there)}" if there else ""
     raise FileError(
         str(path), [f"holds no blade that is known, must hold {must}{plugins().remark}{near}"]

@@ -187,6 +187,16 @@ def _wiggles(blade: Blade) -> list[Finding]:
         )
         for eta, excess in smoothness.edge_bulges(blade)
     ]
+    sliver = 100.0 / (smoothness.FINE - 1)
+    breaks = [
+        Finding(
+            f"eta = {eta:.4f}",
+            f"sections change by {100 * change:.2f} % of the chord on {sliver:g} % of the span, "
+            f"{times:.0f} times as much as beside it: the surface has a step there, as where two "
+            "noses compete to be the leading edge",
+        )
+        for eta, change, times in smoothness.steps(blade)
+    ]
     bends = [
         Finding(
             f"eta = {found.eta:.4f}",
@@ -195,7 +205,7 @@ def _wiggles(blade: Blade) -> list[Finding]:
         )
         for found in inflections.inflections(blade)
     ]
-    return bulges + bends
+    return breaks + bulges + bends
 
 
 def _missed(blade: Blade) -> Array:

@@ -9,10 +9,15 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.support.arrays import Array
 
-__all__ = ["creases", "edge_bulges", "edge_widths"]
+__all__ = ["creases", "edge_bulges", "edge_widths", "steps"]
 
 STEP = 1e-4  # of span, for one-sided derivatives: off by 1e-8 of a third derivative
 SPANS = 400  # spans at which edge widths are compared with the stations'
+FINE = 4001  # spans between which sections may step
+BLOCK = 400  # of these are made at once
+BESIDE = 81  # neighbours to either side whose median a step is held against
+LEAST_STEP = 1e-3  # of chord, from span to span: of a blade 20 chords long a slope of 11 degrees
+STEEP = 5.0  # times the median beside; published blades have up to 2.3
 BULGE = 5e-4  # of chord; smaller excursions of the edge's width are noise of the airfoils
 
 
@@ -72,3 +77,36 @@ def edge_bulges(blade: Blade) -> list[tuple[float, float]]:
         if rows.size
     ]
     return [(float(grid[i]), float(excess[i])) for i in worst if excess[i] > BULGE]
+
+
+def steps(blade: Blade) -> list[tuple[float, float, float]]:
+    """Return where sections change on a sliver of the span by far more than beside it.
+
+    That is what a leading edge does which changes from one nose to another: the chord line turns,
+    and the surface has a step there.  Stations that lie as near to each other are not meant.
+
+    Returns
+    -------
+    list of (eta, change, times)
+        The worst span of each such place, by how much of the chord a unit section changes over
+        1 / (FINE - 1) of the span, and how many times as much that is as the median beside it.
+    """
+    eta = np.linspace(0.0, 1.0, FINE)
+    changes, last = [], np.empty((0, len(blade.u), 2))
+    for part in np.split(eta, range(BLOCK, FINE, BLOCK)):
+        profiles = np.concatenate([last, blade.profiles(part)])
+        changes.append(np.abs(np.diff(profiles, axis=0)).max(axis=(1, 2)))
+        last = profiles[-1:]
+    change = np.concatenate(changes)
+    padded = np.pad(change, BESIDE, mode="edge")
+    beside = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * BESIDE + 1), axis=1)
+    steep = (change > LEAST_STEP) & (change > STEEP * beside)
+    near = np.diff(blade.eta) < 4.0 / (FINE - 1)
+    for low in blade.eta[:-1][near]:
+        steep &= np.abs(eta[:-1] - low) > 8.0 / (FINE - 1)
+    places = np.flatnonzero(steep)
+    groups = np.split(places, np.flatnonzero(np.diff(places) > BESIDE) + 1) if places.size else []
+    worst = [int(group[np.argmax(change[group])]) for group in groups]
+    return [
+        (float(eta[i]), float(change[i]), float(change[i] / max(beside[i], 1e-12))) for i in worst
+    ]

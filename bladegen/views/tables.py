@@ -90,10 +90,7 @@ def definition_figures(definition: BladeDefinition) -> dict[str, Any]:
 def station_rows(
     definition: BladeDefinition, own: Callable[[Airfoil], float] | None = None
 ) -> list[list[str]]:
-    """Return a row a station: eta, z, airfoil, chord, twist, thickness.
-
-    Where a definition has no thickness over span, it is each airfoil's `own`.
-    """
+    """Return a row a station: eta, z, airfoil, chord, twist, thickness, if none is given `own`."""
     eta = np.array([station.eta for station in definition.stations])
     z, chord = _between(definition.axis.z, eta), _between(definition.chord, eta)
     twist = np.degrees(_between(definition.twist, eta))
@@ -163,11 +160,13 @@ def layer_rows(figures: dict[str, Any]) -> list[list[str]]:
 def report_rows(report: dict[str, Any]) -> list[list[str]]:
     """Return the main figures of a build report."""
     figures = report["figures"]
+    mass = figures.get("structure_mass_kg")
     mirrored = report["settings"].get("mirrored", False)
     rows = [
         *([["mirror image", "yes, its trailing edge lies at -y"]] if mirrored else []),
         ["length", f"{digits(figures['length_m'], 3)} m"],
         ["volume by its sections", f"{digits(figures['volume_m3'], 4)} m3"],
+        *([] if mass is None else [["mass of all layers", f"{mass:.0f} kg"]]),
         ["stations missed by", f"{figures['stations_missed_by_chord']:.1e} chord"],
         ["airfoils off their points by", f"{figures['airfoils_moved_by_chord']:.1e} chord"],
         ["chord off its spline by", f"{figures['chord_error_relative']:.1e}"],

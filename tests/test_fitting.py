@@ -10,12 +10,14 @@ from numpy.testing import assert_allclose
 
 import bladegen as bg
 from bladegen.airfoils.section_splines import SectionSplines
+from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import BladegenError, GeometryError
 from bladegen.fitting import measuring
 from bladegen.fitting.clouds.coordinates import about
 from bladegen.fitting.clouds.reading import is_cloud, points_of
 from bladegen.fitting.clouds.surface import surface_of_points
 from bladegen.fitting.like import model_like, parameters_of
+from bladegen.fitting.measuring import Sections, uncrossed
 from bladegen.fitting.placing.copies import one_of_copies
 from bladegen.fitting.placing.finding import found
 from bladegen.fitting.placing.pose import Pose
@@ -267,6 +269,33 @@ def test_a_cloud_with_noise_and_holes_is_smoothed(dtu, coarse):
     some = cloud.mesh.vertices.reshape(360, 480, 3)[20:-20:20, ::24].reshape(-1, 3)
     off = np.abs(distances.signed(some, surfaces.of_mesh(coarse)))
     assert np.percentile(off, 90) < 0.015
+
+
+def crossed_at(rows, count=40):
+    """Return sections of an ellipse, some of them bent into eights."""
+    turn = 2.0 * np.pi * np.linspace(0.0, 1.0, 101)
+    ring = np.stack([0.5 + 0.5 * np.cos(turn), 0.1 * np.sin(turn)], axis=-1)
+    airfoils = np.tile(ring, (count, 1, 1)) * (1.0 + 1e-3 * np.arange(count))[:, None, None]
+    airfoils[rows] = np.stack([ring[:, 0], 0.1 * np.sin(2.0 * turn)], axis=-1)
+    one = np.arange(float(count))
+    return Sections(
+        np.linspace(0.0, 1.0, count), *(one + k for k in range(4)), airfoils, one, one > 0, one,
+        one, one > 0, one,
+    )  # fmt: skip
+
+
+def test_sections_of_a_cloud_that_cross_have_the_shape_of_a_neighbour():
+    """A fit of a scan with 2 mm of noise was refused when it was written: its tip crossed."""
+    given = crossed_at([37, 38, 39])
+    made, said = uncrossed(given, "scan")
+    assert crossing_sections(made.airfoils) == []
+    assert_allclose(made.airfoils[:37], given.airfoils[:37], atol=0)
+    assert_allclose(made.airfoils[37:], given.airfoils[[36, 36, 36]], atol=0)
+    assert_allclose(made.chord, given.chord, atol=0)
+    assert "3 sections of the points' surface, of eta = 0.9487 to 1.0000, cross" in said[0]
+    assert uncrossed(crossed_at([]), "scan")[1] == ()
+    with pytest.raises(GeometryError, match="20 of 40 sections of the points' surface cross"):
+        uncrossed(crossed_at(list(range(20))), "scan")
 
 
 def test_coordinates_of_clouds_go_both_ways(coarse):

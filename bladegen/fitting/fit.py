@@ -17,6 +17,7 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import BladegenError, Finding, GeometryError
 from bladegen.fitting.fitted import Fitted
 from bladegen.fitting.like import model_like, parameters_of
+from bladegen.fitting.measuring import uncrossed
 from bladegen.fitting.placing.finding import FRAMES, UNITS, found
 from bladegen.fitting.sections.cutting import Cutter
 from bladegen.fitting.sources import source_of
@@ -111,6 +112,10 @@ def fit(
     text = said_of if isinstance(source, str | Path) else ""
     try:
         sections, length = surveyed(cuts, surface.mesh.vertices, tolerance, said_of)
+        remarks = side.remarks
+        if cloud is not None:
+            sections, said = uncrossed(sections, said_of)
+            remarks = (*remarks, *said)
         progress("choosing stations")
         rows = fewest(sections, length, AIRFOILS * tolerance, name=called)
         definition = definition_of(sections, rows, length, name=called, source=text)
@@ -128,7 +133,7 @@ def fit(
         whole(samples, "samples", BladegenError),
     )
     residuals = distances.signed(points, skin)
-    findings = [Finding("source", text) for text in (*pose.said, *side.remarks)]
+    findings = [Finding("source", text) for text in (*pose.said, *remarks)]
     spans = np.clip(points[:, 2] / length, 0.0, 1.0)
     return Fitted(
         definition,

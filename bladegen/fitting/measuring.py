@@ -13,6 +13,7 @@ import numpy as np
 from bladegen.airfoils.landmarks import landmark_parameters
 from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.blade.section_planes import ROOT, flange_to_axis
+from bladegen.curves.crossing import crossing_sections
 from bladegen.definition.blade_definition import Distribution, ReferenceAxis
 from bladegen.errors import GeometryError
 from bladegen.fitting.sections.chains import Cut
@@ -20,9 +21,10 @@ from bladegen.fitting.sections.edges import Edges, edges_about, edges_of
 from bladegen.fitting.sections.outlines import is_round, landmarks_of
 from bladegen.support.arrays import Array, Mask
 
-__all__ = ["LANDMARKS", "Cutting", "Sections", "axis_of", "measured", "settled"]
+__all__ = ["LANDMARKS", "Cutting", "Sections", "axis_of", "measured", "settled", "uncrossed"]
 
 LANDMARKS = 401
+SOUND = 0.75  # of the sections, at least: fewer make no blade
 SETTLED = 1e-5  # m that the axis still moves
 ROUNDS = 8
 Cutting = Callable[[Array, Array], list[Cut]]
@@ -202,3 +204,36 @@ def _guided(outlines: list[Array], eta: Array, guide: Sections) -> Edges:
     angles = np.interp(eta, guide.eta, guide.angle)
     widths = np.interp(eta, guide.eta, guide.width)
     return edges_about(outlines, angles, widths, eta <= held)
+
+
+def uncrossed(sections: Sections, name: str) -> tuple[Sections, tuple[str, ...]]:
+    """Return sections of a cloud's surface with shapes that do not cross themselves; what was done.
+
+    A surface through noise cannot narrow as a tip does.  A shape whose sides cross is that of the
+    nearest section that is sound; chord, twist and place stay.
+
+    Raises
+    ------
+    GeometryError
+        If many sections cross themselves.
+    """
+    crossed = crossing_sections(sections.airfoils)
+    if not crossed:
+        return sections, ()
+    sound = np.setdiff1d(np.arange(len(sections.eta)), crossed)
+    if len(sound) < SOUND * len(sections.eta):
+        raise GeometryError(
+            f"{name}: {len(crossed)} of {len(sections.eta)} sections of the points' surface cross "
+            "themselves; must be fewer: give more points, or points with less noise"
+        )
+    nearest = np.abs(sections.eta[:, None] - sections.eta[sound]).argmin(axis=1)
+    rows = np.arange(len(sections.eta))
+    rows[crossed] = sound[nearest[crossed]]
+    low, high = sections.eta[[crossed[0], crossed[-1]]]
+    place = f"at eta = {low:.4f}" if len(crossed) == 1 else f"of eta = {low:.4f} to {high:.4f}"
+    said = (
+        f"{len(crossed)} sections of the points' surface, {place}, cross themselves; they have the "
+        "shapes of the nearest that do not"
+    )
+    own = replace(sections, airfoils=sections.airfoils[rows], thickness=sections.thickness[rows])
+    return own, (said,)

@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from bladegen.errors import MissingLibraryError, PerturbationError
+from bladegen.errors import FamilyError, MissingLibraryError, PerturbationError
 from bladegen.families.dataset.loading import LoadedFamily
-from bladegen.families.dataset.reading import arrays_at
+from bladegen.families.dataset.reading import arrays_at, chosen, named
 from bladegen.parametric.adapters.outputs import Evaluated, Outputs
 from bladegen.parametric.model import ParametricBlade
+from bladegen.support.arguments import instance
 
 try:
     import torch
@@ -65,7 +66,8 @@ class BladeFunction:
         if not isinstance(x, torch.Tensor) or x.dtype != torch.float64:
             kind = x.dtype if isinstance(x, torch.Tensor) else type(x).__name__
             raise PerturbationError(
-                f"x: got {kind}, must be a tensor of type torch.float64; x.double() makes one"
+                f"x: got {kind}, must be a tensor of type torch.float64; "
+                "torch.as_tensor(x).double() makes one"
             )
         return dict(zip(self.outputs, _Values.apply(self._made, x), strict=True))
 
@@ -164,7 +166,7 @@ class FamilyDataset(Dataset):  # type: ignore[misc]
     places : (b,) array of int, optional
         Which variants, such as ``family.split("train")``; all if not given.
     dtype : torch.dtype
-        Of the tensors.
+        Of the tensors, torch.float32 by default, also of what the family holds in float64.
 
     Notes
     -----
@@ -179,8 +181,14 @@ class FamilyDataset(Dataset):  # type: ignore[misc]
         places: Any = None,
         dtype: Any = torch.float32,
     ) -> None:
-        self.family, self.names, self.dtype = family, tuple(names), dtype
-        self.places = np.arange(len(family)) if places is None else np.asarray(places)
+        must = "a LoadedFamily; bladegen.load_family(path) opens one"
+        instance(family, LoadedFamily, "family", must, FamilyError)
+        self.family, self.names, self.dtype = family, named(family, names), dtype
+        self.places = chosen(family, places)
+        for name in self.names:
+            kind = family.parameters.dtype if name == "parameters" else family[name].dtype
+            if kind.kind not in "biuf":
+                raise FamilyError(f"names: {name!r} holds texts, must be numbers or True and False")
 
     def __len__(self) -> int:
         return len(self.places)

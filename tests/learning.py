@@ -17,7 +17,7 @@ from numpy.testing import assert_allclose
 import bladegen as bg
 import bladegen.jax
 import bladegen.torch
-from bladegen.errors import PerturbationError
+from bladegen.errors import FamilyError, PerturbationError
 
 EVERY = ("sections", "volume", "section_area")
 ADAPTERS = {"torch": bladegen.torch.BladeFunction, "jax": bladegen.jax.BladeFunction}
@@ -98,7 +98,7 @@ def test_a_loss_goes_through_several_outputs_in_jax():
 def test_what_is_not_there_is_said():
     function = bladegen.torch.BladeFunction(model(), "volume")
     x = torch.tensor(vectors(), requires_grad=True)
-    with pytest.raises(PerturbationError, match=r"got torch.float32, .* x.double\(\) makes one"):
+    with pytest.raises(PerturbationError, match=r"got torch.float32, .*\.double\(\) makes one"):
         function(x.float())
     with pytest.raises(PerturbationError, match="got ndarray, must be a tensor"):
         function(vectors())
@@ -148,6 +148,16 @@ def test_torch_loads_a_family_in_batches(family):
     assert sorted(seen) == family.split("train").tolist()
     with pytest.raises(IndexError):
         data[len(data)]
+    for given, said in (
+        ((family, ("reason",)), "'reason' holds texts"),
+        ((family, "volum"), "did you mean volume"),
+        ((family, ("volume",), [9999]), "places: got 9999, allowed is 0 to 69"),
+        (("family", ("volume",)), "must be a LoadedFamily; bladegen.load_family"),
+    ):
+        with pytest.raises(FamilyError, match=said):
+            bladegen.torch.FamilyDataset(*given)
+    mask = np.arange(len(family)) < 5
+    assert len(bladegen.torch.FamilyDataset(family, "volume", mask)) == 5
 
 
 def test_jax_is_given_a_familys_batches(family):

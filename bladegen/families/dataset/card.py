@@ -28,7 +28,13 @@ MEANT = {
 }
 
 
-def card(identity: Mapping[str, Any], about: Mapping[str, Any], sound: int, draws: int) -> str:
+def card(
+    identity: Mapping[str, Any],
+    about: Mapping[str, Any],
+    ranges: Mapping[str, tuple[float, float, str]],
+    sound: int,
+    draws: int,
+) -> str:
     """Return the card of a family as Markdown.
 
     Parameters
@@ -37,14 +43,16 @@ def card(identity: Mapping[str, Any], about: Mapping[str, Any], sound: int, draw
         What `family.json` holds.
     about : mapping
         Attributes of its dataset.
+    ranges : mapping
+        Least and largest value of each parameter among the variants, and its unit, by variable.
     sound, draws : int
         How many variants are sound, and how often all were drawn.
     """
     count, spans, landmarks = (identity[name] for name in ("count", "spans", "landmarks"))
     kind = identity["design"]
     factors = "\n".join(
-        f"| {name} | {low:.6g} | {high:.6g} | {'rad' if _angle(name) else 'factor'} |"
-        for name, (low, high) in identity["factors"].items()
+        f"| `{name}` | {low:.6g} | {high:.6g} | {unit} |"
+        for name, (low, high, unit) in ranges.items()
     )
     shares = ", ".join(f"{name} {share:.0%}" for name, share in zip(SPLITS, SHARES, strict=True))
     said = "\n".join(f"- {name.replace('_', ' ')}: {about[name]}" for name in about if _told(name))
@@ -81,6 +89,9 @@ the trailing edge.
 | parameter | least | largest | unit |
 | --- | --- | --- | --- |
 {factors}
+
+These are the variants' own values. The bounds that the design was given stand in `family.json`;
+ellipsoids and normal distributions about the mean can reach beyond them.
 
 ## How it was made
 
@@ -138,10 +149,6 @@ def _shown(value: Any) -> str:
     if isinstance(value, list):
         return " / ".join(map(_shown, value))
     return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def _angle(name: str) -> bool:
-    return name == "twist" or name[1:].isdigit()
 
 
 def _told(name: str) -> bool:

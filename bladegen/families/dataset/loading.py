@@ -5,7 +5,6 @@ does not hold comes from the manifest.
 """
 
 import json
-import operator
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,9 +14,10 @@ from typing import Any, SupportsIndex
 import numpy as np
 
 from bladegen.blade.blade import Blade
-from bladegen.errors import FamilyError, MissingLibraryError, PlaceError
+from bladegen.errors import FamilyError, MissingLibraryError
 from bladegen.families.conditions import matching, numbers
 from bladegen.families.dataset.graphs import edges, surface, triangles
+from bladegen.families.dataset.reading import batches, place_of
 from bladegen.families.dataset.replanning import planned_again
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
 from bladegen.families.dataset.store import column_values, opened
@@ -25,7 +25,7 @@ from bladegen.families.dataset.variables import parameter, variables
 from bladegen.families.family import Family
 from bladegen.families.identity import require_current
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.support.arguments import one_of, shown, suggestion, whole
+from bladegen.support.arguments import one_of, suggestion, whole
 from bladegen.support.arrays import Array, Indices, readonly
 from bladegen.support.files import content_of
 
@@ -107,15 +107,11 @@ class LoadedFamily:
             return self._array(key)
         if isinstance(key, slice):
             return [self._blade(place) for place in range(*key.indices(len(self)))]
-        try:
-            place = operator.index(key)
-        except TypeError:
-            raise FamilyError(
-                f"variant: got {shown(key)}, must be a whole number or a name"
-            ) from None
-        if not -len(self) <= place < len(self):
-            raise PlaceError(f"variant: got {place}, allowed is 0 to {len(self) - 1}")
-        return self._blade(place % len(self))
+        return self._blade(place_of(key, len(self)))
+
+    def __contains__(self, name: object) -> bool:
+        """Tell whether there is an array of this name."""
+        return name in self.names
 
     def _array(self, name: str) -> Any:
         if name in self.store:
@@ -193,18 +189,16 @@ class LoadedFamily:
         Parameters
         ----------
         names : sequence of str
-            Arrays of the store, or "parameters".
+            Arrays of the store, or "parameters"; one alone may be a text.
         size : int
             Variants at once; the last ones may be fewer.
         places : (b,) array of int, optional
-            Which variants, all if not given: `split` gives them.
+            Which variants, all if not given: `split` gives them; or True and False for each.
         rng : numpy.random.Generator, optional
             Shuffles: shards in any order, and the variants of some shards that lie in memory
             together, so that each shard is read once.
         """
-        from bladegen.families.dataset.reading import batches
-
-        return batches(self, tuple(names), size, places, rng)
+        return batches(self, names, size, places, rng)
 
     def graph(self, place: int) -> dict[str, Any]:
         """Return a variant as a graph, for learning on geometry, as NumPy arrays.
@@ -213,6 +207,7 @@ class LoadedFamily:
         ``triangles`` (f, 3); points in the order of the sections, root to tip.  A family made with
         ``--format graph`` holds them; of others they are computed.
         """
+        place = place_of(place, len(self))
         sections = np.asarray(self["sections"][place])
         stored = "normals" in self.store
         made = [self[name][place] for name in ("normals", "areas")] if stored else surface(sections)

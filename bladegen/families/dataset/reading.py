@@ -1,32 +1,37 @@
 """Batches of a family's arrays, as training loops read them: shard by shard, shuffled or not."""
 
+import operator
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, SupportsIndex
 
 import numpy as np
 
-from bladegen.errors import FamilyError
-from bladegen.support.arguments import whole
+from bladegen.errors import FamilyError, PlaceError
+from bladegen.support.arguments import shown, whole
 from bladegen.support.arrays import Indices
 
-__all__ = ["arrays_at", "batches"]
+__all__ = ["arrays_at", "batches", "chosen", "named", "place_of"]
 
+NEAR = 2  # variants that are read between two that are wanted: one read costs as much as they
 POOL = 4  # shards whose variants are shuffled together
 
 
 def batches(
     family: Any,
-    names: tuple[str, ...],
+    names: Any,
     size: int,
-    places: Indices | None,
+    places: Any,
     rng: np.random.Generator | None,
 ) -> Iterator[dict[str, Any]]:
     """Give batches of a loaded family's arrays (`LoadedFamily.batches`)."""
     if whole(size, "size", FamilyError) < 1:
         raise FamilyError(f"size: got {size}, must be at least 1")
-    for name in names:
-        _array(family, name)
-    wanted = np.arange(len(family)) if places is None else np.asarray(places)
+    names, wanted = named(family, names), chosen(family, places)
+    if rng is not None and not isinstance(rng, np.random.Generator):
+        raise FamilyError(
+            f"rng: got {shown(rng)}, must be a numpy.random.Generator, such as "
+            "numpy.random.default_rng(7)"
+        )
     shard = (family["sections"].shards or family["sections"].chunks)[0]
     groups = [
         wanted[wanted // shard == number] for number in dict.fromkeys((wanted // shard).tolist())
@@ -61,10 +66,48 @@ def _rows(array: Any, places: Indices) -> Any:
     """Return rows of an array in NumPy or of a store: one read where they follow each other."""
     if not len(places):
         return np.asarray(array[:0])
-    first, last = int(places.min()), int(places.max())
     if isinstance(array, np.ndarray):
         return array[places]
-    if last - first + 1 <= 2 * len(places):
-        return np.asarray(array[first : last + 1])[places - first]
     unique, back = np.unique(places, return_inverse=True)
-    return np.asarray(array.oindex[unique])[back]
+    runs = np.split(unique, np.flatnonzero(np.diff(unique) > NEAR) + 1)
+    read = [np.asarray(array[run[0] : run[-1] + 1])[run - run[0]] for run in runs]
+    return np.concatenate(read)[back]
+
+
+def chosen(family: Any, places: Any) -> Indices:
+    """Return places of variants, (b,), or say what is wrong with them."""
+    if places is None:
+        return np.arange(len(family))
+    found = np.asarray(places)
+    if found.dtype == bool and found.shape == (len(family),):
+        return np.flatnonzero(found)
+    if found.ndim != 1 or (found.size and not np.issubdtype(found.dtype, np.integer)):
+        raise FamilyError(
+            f"places: got an array of {found.dtype} of shape {found.shape}, must be whole numbers, "
+            f'such as family.split("train"), or {len(family)} of True and False'
+        )
+    outside = found[(found < 0) | (found >= len(family))]
+    if outside.size:
+        raise FamilyError(f"places: got {outside[0]}, allowed is 0 to {len(family) - 1}")
+    return found.astype(np.int64)
+
+
+def place_of(key: SupportsIndex, count: int) -> int:
+    """Return the place of one of `count` variants, from the end if it is negative."""
+    try:
+        place = operator.index(key)
+    except TypeError:
+        raise FamilyError(f"variant: got {shown(key)}, must be a whole number or a name") from None
+    if not -count <= place < count:
+        raise PlaceError(f"variant: got {place}, allowed is 0 to {count - 1}")
+    return place % count
+
+
+def named(family: Any, names: Any) -> tuple[str, ...]:
+    """Return names of arrays, each of which the family holds; one alone may be a text."""
+    listed = (names,) if isinstance(names, str) else tuple(names)
+    if not listed:
+        raise FamilyError('names: got none, must be arrays such as ("parameters", "sections")')
+    for name in listed:
+        _array(family, name)
+    return listed

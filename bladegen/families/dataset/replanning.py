@@ -1,5 +1,6 @@
 """A family's plan again, from what its folder says: baseline, space and where each variant lies."""
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -68,6 +69,8 @@ def _space(path: Path, told: Mapping[str, Any]) -> ShapeSpace | None:
 
 def _baseline(path: Path, told: Mapping[str, Any]) -> Blade:
     settings, name = told.get("baseline_settings", {}), told.get("baseline", told["blade"])
+    if isinstance(settings, str):  # a mapping in families of 2.0.0rc1
+        settings = json.loads(settings)
     if name not in bundled() or any(key.startswith("change1.") for key in settings):
         raise FamilyError(
             f"{path}: its baseline {name!r} is no bundled blade; "

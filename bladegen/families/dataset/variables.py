@@ -65,7 +65,13 @@ FLAT = (
     Variable("reason", "reason", ("variant",), "what is not sound"),
     Variable("attempts", "attempts", ("variant",), "how many draws it took", ONE),
     Variable("volume", "volume_m3", ("variant",), "volume within the skin", "m3"),
-    Variable("surface", "surface_m2", ("variant",), "area of the skin", "m2"),
+    Variable(
+        "surface",
+        "surface_m2",
+        ("variant",),
+        "area of the skin and of root and tip",
+        "m2",
+    ),
     Variable("sections_sha256", "sections_sha256", ("variant",), "SHA-256 of the sections"),
 )
 SPANWISE = (

@@ -1,5 +1,6 @@
 """The dataset of a family whose sections and manifest are whole: arrays, card, space."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 from bladegen.exports.provenance import blade_settings, made_from
 from bladegen.families.dataset.card import card
 from bladegen.families.dataset.store import complete
+from bladegen.families.dataset.variables import parameter
 from bladegen.families.folder import FamilyFolder, read_manifest
 from bladegen.families.order import Order
 from bladegen.shapes.shape_space import ShapeSpace
@@ -38,7 +40,13 @@ def write_dataset(order: Order) -> None:
 def write_card(place: FamilyFolder, identity: dict[str, Any], told: Mapping[str, Any]) -> None:
     """Write the card of a family, by what its folder and its dataset say of it."""
     rows = read_manifest(place, ("valid", "attempts"))
-    text = card(identity, told, int(rows["valid"].sum()), int(np.sum(rows["attempts"])))
+    varied = [parameter(factor) for factor in identity["factors"]]
+    values = read_manifest(place, tuple(one.column for one in varied))
+    ranges = {
+        one.name: (float(values[one.column].min()), float(values[one.column].max()), one.units)
+        for one in varied
+    }
+    text = card(identity, told, ranges, int(rows["valid"].sum()), int(np.sum(rows["attempts"])))
     with replacing(place.path / CARD) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
@@ -57,6 +65,6 @@ def about(order: Order) -> dict[str, Any]:
         "baseline": blade.definition.name,
         "baseline_file": made.source,
         "baseline_sha256": made.sha256,
-        "baseline_settings": blade_settings(blade),
+        "baseline_settings": json.dumps(blade_settings(blade)),  # a text: netCDF takes no mapping
         "made_from": made.text,
     }

@@ -262,3 +262,19 @@ def test_values_come_back_as_their_kind():
     assert function(len, "x", "a function", error) is len
     with pytest.raises(BladegenError, match="x: got 'B', allowed are a, bb; did you mean bb"):
         one_of("B", ["a", "bb"], "x", error)
+
+
+def test_complex_numbers_are_called_so():
+    """`got an array of shape (14,), must be numbers` said nothing of complex steps."""
+    from bladegen.errors import PerturbationError
+    from bladegen.support.arguments import numbers
+
+    with pytest.raises(PerturbationError, match=r"x: got .*, must be real numbers; complex steps"):
+        numbers(np.ones(3) + 1e-20j, "x", PerturbationError)
+
+
+def test_a_design_that_is_called_otherwise_is_named():
+    from bladegen.errors import SpaceError
+
+    with pytest.raises(SpaceError, match=r"'normal', which is .* called 'gaussian' here"):
+        bg.ShapeSpace.bundled().distribution("normal")

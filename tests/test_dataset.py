@@ -21,6 +21,7 @@ from bladegen.cli import commands
 from bladegen.errors import FamilyError, PlaceError
 from bladegen.families.dataset import graphs
 from bladegen.families.dataset.splits import SHARES, SPLITS, split_of
+from bladegen.families.identity import require_same
 from bladegen.families.order import Order
 from bladegen.families.run import run
 from strategies import by_day
@@ -444,6 +445,17 @@ def test_what_cannot_be_added_is_refused(folder, planned, change, said):
     with pytest.raises(FamilyError, match=said):
         run(Order(other, folder), append=True)
     assert (folder / "family.json").read_bytes() == before
+
+
+def test_other_bounds_are_told_in_a_line(folder, planned):
+    there = bg.load_family(folder).identity
+    other = {name: (low / 2.0, high) for name, (low, high) in there["factors"].items()}
+    with pytest.raises(FamilyError) as caught:
+        require_same(folder, {**there, "factors": other}, there)
+    said = str(caught.value)
+    assert "thickness 0.9:1.1, " in said
+    assert "--reach, --vary and --space say what varies" in said
+    assert "0000" not in said
 
 
 def test_nothing_to_add_to_is_refused(planned, tmp_path):

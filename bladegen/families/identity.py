@@ -126,7 +126,16 @@ def require_same(path: Path, wanted: dict[str, Any], found: dict[str, Any]) -> N
             )
     if different:
         said = [
-            f"{key}: {json.dumps(found.get(key))} there, {json.dumps(wanted.get(key))} asked for"
+            f"{key}: {_short(found.get(key))} there, {_short(wanted.get(key))} asked for"
             for key in different[:3]
         ]
+        if "factors" in different:
+            said.append("--reach, --vary and --space say what varies and how far")
         raise FamilyError(f"{path}: holds another family ({'; '.join(said)}); take another folder")
+
+
+def _short(value: Any) -> str:
+    """Return a value of an identity as it is told: bounds to three digits."""
+    if isinstance(value, dict) and all(isinstance(one, list | tuple) for one in value.values()):
+        return ", ".join(f"{name} {low:.3g}:{high:.3g}" for name, (low, high) in value.items())
+    return json.dumps(value)

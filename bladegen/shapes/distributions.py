@@ -21,6 +21,8 @@ from bladegen.support.arrays import Array, Mask
 
 __all__ = ["KINDS", "Distribution", "distribution_of", "sound_at"]
 
+DESIGNS = {"normal": "gaussian", "smallest": "ellipsoid"}  # `designs` names them otherwise
+
 TRIED, SEED = 5_000, 2022  # draws that say which share of a distribution is sound
 HOPELESS = 10_000  # draws of which none is sound
 CHUNK = 500  # shapes that are tested at once: they fit in a cache
@@ -130,6 +132,11 @@ def distribution_of(space: Any, kind: str, *, sound: bool = False) -> Distributi
     SpaceError
         If there is no such kind, or the data are too few for it.
     """
+    if kind in DESIGNS:
+        raise SpaceError(
+            f"distribution: got {kind!r}, which is the design of families that is called "
+            f"{DESIGNS[kind]!r} here; allowed are {', '.join(KINDS)}"
+        )
     one_of(kind, KINDS, "distribution", SpaceError)
     density = _density(space, kind)
     return Distribution(kind, space.dimension, density, space.sound if sound else None)

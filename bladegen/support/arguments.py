@@ -110,6 +110,8 @@ def numbers(values: Any, field: str, error: type[BladegenError], form: str = "nu
         array = np.asarray(values)
         if array.dtype.kind in "iuf":
             return np.asarray(array, dtype=np.float64)
+        if array.dtype.kind == "c":
+            form = "real numbers; complex steps are not taken"
     except (TypeError, ValueError):  # a ragged list, or what is no list
         pass
     raise error(f"{field}: got {shown(values)}, must be {form}")

@@ -29,12 +29,13 @@ def mesh(tmp_path_factory) -> Path:
 
 
 def refused(answer: dict[str, Any], *words: str) -> None:
-    """The command ended with 1 and one line that says why."""
+    """The command ended with 1 and one line that says why, behind what it noted at its start."""
     assert answer["status"] == 1, answer["err"]
-    assert answer["err"].startswith("bladegen: "), answer["err"]
-    assert answer["err"].count("\n") == 1, answer["err"]
+    *notes, why = answer["err"].splitlines()
+    assert all(note.startswith("note: ") for note in notes), answer["err"]
+    assert why.startswith("bladegen: "), answer["err"]
     for word in words:
-        assert word in answer["err"]
+        assert word in why
 
 
 def is_whole(path: Path) -> bool:

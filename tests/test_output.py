@@ -72,3 +72,14 @@ def test_other_failures_stay_what_they_are():
     with pytest.raises(OSError, match="elsewhere") as raised, guarded():
         raise OSError("elsewhere")
     assert not isinstance(raised.value, OutputError)
+
+
+def test_long_names_in_tables_are_folded_and_not_cut(capsys, monkeypatch):
+    """`rotor_power_co...` is no name that --where takes."""
+    from bladegen.cli.terminal import print_table
+
+    monkeypatch.setenv("COLUMNS", "60")
+    print_table(["figure", *"abcd"], [["rotor_power_coefficient", *["0.123456789"] * 4]])
+    shown = capsys.readouterr().out
+    assert "\u2026" not in shown
+    assert "".join(line[:12].strip() for line in shown.splitlines()[3:]).startswith("rotor_power_")

@@ -160,10 +160,11 @@ def print_findings(findings: list[str]) -> None:
 def print_table(columns: list[str], rows: list[list[str]], title: str | None = None) -> None:
     from rich import box
     from rich.console import Console
-    from rich.table import Table
+    from rich.table import Column, Table
 
     head = None if title is None else visible(title)
-    table = Table(*columns, title=head, title_justify="left", box=box.SIMPLE_HEAD)
+    whole = [Column(name, overflow="fold") for name in columns]  # names are typed again: not cut
+    table = Table(*whole, title=head, title_justify="left", box=box.SIMPLE_HEAD)
     for row in rows:
         table.add_row(*map(visible, row))
     Console().print(table, markup=False, highlight=False)

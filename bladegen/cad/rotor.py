@@ -24,13 +24,18 @@ from bladegen.support.arrays import Array
 from bladegen.surface.gltf import Standing, glb
 from bladegen.surface.mesh import TriangleMesh
 
-__all__ = ["Rotor", "rotor_of", "write_glb", "write_step"]
+__all__ = ["ASSEMBLED", "KINDS", "Rotor", "rotor_of", "write_glb", "write_step"]
 
 NOSE, BACK = 1.3, 0.9  # lengths of the spinner ahead of and behind the blades, in its radii
 COVER = 1.02  # the spinner's radius over what hides the root sections
+KINDS = ("assembly", "fused", "sector")
 MOST_BLADES = 8
 LARGEST_HUB = 1.0  # radius over the blade's length
 LARGEST_CONE = np.radians(45.0)
+ASSEMBLED = (
+    "rotor: blades begin inside the spinner, parts that lie in each other; --rotor-as fused makes "
+    "one body of them"
+)
 DEFLECTION = 0.005  # m, of the spinner's triangles
 
 
@@ -50,6 +55,8 @@ class Rotor:
         Of the plain spinner [m].
     mirrored : bool
         Turn anticlockwise as seen from upwind.
+    made_as : str
+        One of `KINDS`: parts in an assembly, one solid, or the solid of one blade's sector.
     """
 
     blades: int
@@ -57,6 +64,7 @@ class Rotor:
     cone: float
     spinner_radius: float
     mirrored: bool = False
+    made_as: str = "assembly"
 
     def placements(self) -> tuple[Array, Array]:
         """Return rotations (n, 3, 3) and shifts (n, 3) [m]: points are ``p @ R.T + shift``.
@@ -86,6 +94,7 @@ def rotor_of(
     mirrored: bool = False,
     hub_radius: float | None = None,
     cone: float | None = None,
+    made_as: str = "assembly",
 ) -> Rotor:
     """Return the rotor that a blade's definition describes.
 
@@ -99,12 +108,16 @@ def rotor_of(
         Instead of the definition's [m].
     cone : float, optional
         Precone instead of the definition's, positive upwind [rad].
+    made_as : str
+        "assembly", "fused" or "sector".
 
     Raises
     ------
     CadError
-        If there is no hub radius, or no usable number of blades or cone.
+        If there is no hub radius, or no usable number of blades or cone, or no such kind.
     """
+    if made_as not in KINDS:
+        raise CadError(f"made_as: got {made_as!r}, allowed are {', '.join(KINDS)}")
     facts = blade.definition.rotor
     if hub_radius is not None or cone is not None:
         facts = replace(
@@ -132,7 +145,7 @@ def rotor_of(
     root = blade.sections(np.zeros(1))[0]
     reach = float(np.max(np.linalg.norm(root[:, :2], axis=-1)))
     radius = COVER * float(np.hypot(facts.hub_radius, reach))
-    return Rotor(facts.blades, facts.hub_radius, facts.cone or 0.0, radius, mirrored)
+    return Rotor(facts.blades, facts.hub_radius, facts.cone or 0.0, radius, mirrored, made_as)
 
 
 def write_step(
@@ -155,19 +168,19 @@ def write_step(
     """
     from OCP.TopLoc import TopLoc_Location
 
-    blade = _mirrored(solid.part) if rotor.mirrored else solid.part
+    blade = mirrored_part(solid.part) if rotor.mirrored else solid.part
     places = [
-        Place(f"blade {number}", blade, _location(rotation, shift))
+        Place(f"blade {number}", blade, location(rotation, shift))
         for number, (rotation, shift) in enumerate(zip(*rotor.placements(), strict=True), start=1)
     ]
-    spinner = Part("spinner", _spinner(rotor.spinner_radius).wrapped)
-    places.append(Place("spinner", spinner, TopLoc_Location()))
+    hub = Part("spinner", spinner(rotor.spinner_radius))
+    places.append(Place("spinner", hub, TopLoc_Location()))
     step_documents.write(
         (f"{solid.name} rotor", places), path, schema=schema, timestamp=timestamp, author=author
     )
 
 
-def _location(rotation: Array, shift: Array) -> Any:
+def location(rotation: Array, shift: Array) -> Any:
     """Return where points ``p @ rotation.T + shift`` are, the shift in metres, as OCCT has it."""
     from OCP.gp import gp_Trsf
     from OCP.TopLoc import TopLoc_Location
@@ -178,7 +191,7 @@ def _location(rotation: Array, shift: Array) -> Any:
     return TopLoc_Location(move)
 
 
-def _mirrored(part: Part) -> Part:
+def mirrored_part(part: Part) -> Part:
     """Return a part mirrored in y, under the same names."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
     from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf
@@ -200,16 +213,21 @@ def write_glb(rotor: Rotor, mesh: TriangleMesh, path: Path) -> None:
         Standing(f"blade {number}", blade, rotation, shift)
         for number, (rotation, shift) in enumerate(zip(*rotor.placements(), strict=True), start=1)
     ]
-    spinner = triangulated(_spinner(rotor.spinner_radius).wrapped, DEFLECTION)
-    parts.append(Standing("spinner", spinner, np.eye(3), np.zeros(3)))
+    hub = triangulated(spinner(rotor.spinner_radius), DEFLECTION)
+    parts.append(Standing("spinner", hub, np.eye(3), np.zeros(3)))
     path.write_bytes(glb("rotor", parts))
 
 
-def _spinner(radius: float) -> Any:
-    """Return a cadquery solid [mm]: an ellipsoidal nose ahead of a cylinder, along x."""
+def spinner(radius: float, angle: float = 2.0 * np.pi) -> Any:
+    """Return a solid of OCCT [mm]: an ellipsoidal nose ahead of a cylinder, along x.
+
+    Or its share within an angle [rad], half of it on each side of z.
+    """
     import cadquery as cq
 
     r = radius * MILLIMETRES
     nose = cq.Workplane("XY").moveTo(0, r).ellipseArc(NOSE * r, r, 90, 180)
     outline = nose.lineTo(BACK * r, 0).lineTo(BACK * r, r).close()
-    return outline.revolve(360, (0, 0, 0), (1, 0, 0)).val()
+    turned = outline.revolve(np.degrees(angle), (0, 0, 0), (1, 0, 0))
+    from_y = 90.0 - 0.5 * np.degrees(angle)
+    return turned.rotate((0, 0, 0), (1, 0, 0), from_y).val().wrapped

@@ -1,5 +1,6 @@
 """`bladegen build` and `bladegen perturb`: the files of one blade."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,6 +24,14 @@ from bladegen.cli.terminal import print_summary, progress_bar, remark
 from bladegen.errors import BladegenError
 
 __all__ = ["build", "perturb"]
+
+
+class RotorKind(StrEnum):
+    """What a rotor is made as."""
+
+    assembly = "assembly"
+    fused = "fused"
+    sector = "sector"
 
 
 CURVES, STRUCTURE = "curves.step", "structure.step"
@@ -54,6 +63,14 @@ def build(
     rotor: Annotated[
         bool, typer.Option("--rotor", help="The whole rotor too, as STEP assembly and GLB.")
     ] = False,
+    rotor_as: Annotated[
+        RotorKind,
+        typer.Option(
+            "--rotor-as",
+            help="The rotor as parts in an assembly; fused, one solid and its STL by regions; or "
+            "the sector of one blade between two cuts.",
+        ),
+    ] = RotorKind.assembly,
     mirror: Mirror = False,
     hub_radius: Annotated[
         str | None,
@@ -73,6 +90,7 @@ def build(
     made = making.blade(blade, landmarks)
     made = made.mirror_image() if mirror else made
     whole = None
+    rotor = rotor or rotor_as is not RotorKind.assembly
     if not rotor and (hub_radius or precone):
         raise BladegenError("hub-radius, precone: are of the rotor; add --rotor, or leave them out")
     if rotor:
@@ -85,6 +103,7 @@ def build(
             if hub_radius is None
             else metres(hub_radius, "hub-radius", example="2m"),
             cone=None if precone is None else radians(precone, "precone"),
+            made_as=rotor_as.value,
         )
     suffixes = _with(suffixes, {CURVES: curves, STRUCTURE: structure})
     _say_what_is_idle(producing, suffixes, rotor=rotor)

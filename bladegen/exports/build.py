@@ -10,13 +10,12 @@ import platform
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from bladegen.blade.blade import Blade
-from bladegen.cad import exchange, shapes
-from bladegen.cad.rotor import Rotor, write_glb, write_step
+from bladegen.cad import exchange, rotor_body, shapes
+from bladegen.cad.rotor import ASSEMBLED, Rotor, write_glb, write_step
 from bladegen.errors import ExportError, PromiseError
 from bladegen.exports import exporters, marks
 from bladegen.exports.inventory import REPORT, others
@@ -32,14 +31,13 @@ from bladegen.support.files import alone, folder, replacing, safe_stem
 from bladegen.surface import mesh, mesh_files
 from bladegen.surface.deviation import Deviation
 from bladegen.surface.grids.grid_quality import grid_figures
-from bladegen.version import __version__
+from bladegen.version import __version__, of_libraries
 from bladegen.views.plots import combs
 
 __all__ = ["DEFAULT_FORMATS", "build", "report_path"]
 
 logger = logging.getLogger(__name__)
 DEFAULT_FORMATS = ("step", "stl", "glb", "png")
-LIBRARIES = ("numpy", "scipy", "cadquery", "cadquery-ocp", "trimesh", "pyvista", "vtk", "h5py")
 SPANWISE = ".spanwise.csv"
 SPANWISE_ROWS = 60  # in the report; the CSV file holds all
 FROM_FILE = ("solids", "faces", "valid", "closed", "area_m2", "bounds_m")
@@ -69,7 +67,8 @@ def build(
     options : Options, optional
         How products are made.
     rotor : Rotor, optional
-        Write the whole rotor too, as ``<name>.rotor.step`` and ``<name>.rotor.glb``.
+        Write the whole rotor too, as ``<name>.rotor.step`` and ``<name>.rotor.glb``; one that is
+        fused or a sector also as ``<name>.rotor.regions.stl`` (``.sector.`` instead).
     progress : callable
         Told what is being done.
 
@@ -115,7 +114,7 @@ def _built(
         "blade": blade.name,
         "source": Path(blade.definition.source).name,
         "bladegen": __version__,
-        "versions": {"python": platform.python_version(), **_versions()},
+        "versions": {"python": platform.python_version(), **of_libraries()},
         "settings": _settings(blade, options),
         "changes": list(blade.changes),
     }
@@ -138,7 +137,7 @@ def _built(
             _measure(report, products, kind, made)
     if rotor is not None:
         report["rotor"] = asdict(rotor) | {"mirrored": blade.mirrored != rotor.mirrored}
-        miss = _rotor(rotor, products, target / f"{stem}.rotor", ledger) or miss
+        miss = _rotor(rotor, products, target / stem, ledger, report["rotor"]) or miss
     if any(path.suffix == ".png" for path in paths):
         by = products.made_from(Kind.picture, ".png")
         with ledger.writing(target / f"{stem}.combs.png", "combs", by) as temporary:
@@ -152,7 +151,8 @@ def _built(
     written = {entry["name"] for entry in ledger.files}
     left, notes = others(target, stem, written, partial(_made_here, products))
     report["files"] = ledger.files + left
-    report["remarks"] = [str(remark) for remark in (*products.remarks, *notes)]
+    about = [] if rotor is None else [report["rotor"].pop("said")]
+    report["remarks"] = [str(remark) for remark in (*products.remarks, *about, *notes)]
     report["seconds"] = {stage: round(spent, 3) for stage, spent in ledger.seconds.items()}
     with replacing(report_path(target, blade.name)) as temporary:
         temporary.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
@@ -161,28 +161,43 @@ def _built(
     return report
 
 
-def _rotor(rotor: Rotor, products: Products, stem: Path, ledger: Ledger) -> PromiseError | None:
-    """Write a rotor's two files; return what was asked of its solids and is not so."""
-    made, miss = stem.with_name(f"{stem.name}.step"), None
-    ledger.progress(f"writing {made.name}")
+def _rotor(
+    rotor: Rotor, products: Products, stem: Path, ledger: Ledger, report: dict[str, Any]
+) -> PromiseError | None:
+    """Write a rotor's files; return what was asked of its solids and is not so."""
+    part = "sector" if rotor.made_as == "sector" else "rotor"
+    made, miss = stem.with_name(f"{stem.name}.{part}.step"), None
     told = tuple((f"rotor_{key}", word(value)) for key, value in asdict(rotor).items())
-    solid, triangles = (
-        replace(by, settings=by.settings + told, id="")
-        for by in (
-            products.made_from(Kind.solid, ".step"),
-            products.made_from(Kind.triangles, ".glb"),
-        )
-    )
+
+    def by(kind: Kind, suffix: str) -> Provenance:
+        plain = products.made_from(kind, suffix)
+        return replace(plain, settings=plain.settings + told, id="")
+
+    solid, body = by(Kind.solid, ".step"), None
+    options = {"schema": products.options.step_schema, **products.options.told}
     with ledger.timed("rotor"), marks.marked(made, solid) as temporary:
-        options = products.options
-        write_step(rotor, products.solid, temporary, schema=options.step_schema, **options.told)
+        if rotor.made_as == "assembly":
+            report["said"] = ASSEMBLED
+            ledger.progress(f"writing {made.name}")
+            write_step(rotor, products.solid, temporary, **options)
+        else:
+            ledger.progress("fusing blades and spinner")
+            body = rotor_body.MAKERS[rotor.made_as](rotor, products.solid)
+            report |= {"body": body.figures, "said": str(body)}
+            body.write_step(temporary, **options)
     try:
         exporters.require_size(products, made)
     except PromiseError as error:
         miss, made = error, error.kept or made
     ledger.note(made, solid)
-    with ledger.writing(stem.with_name(f"{stem.name}.glb"), "rotor", triangles) as temporary:
-        write_glb(rotor, products.mesh, temporary)
+    if body is not None:
+        regions = stem.with_name(f"{stem.name}.{part}.regions.stl")
+        with ledger.writing(regions, "rotor", by(Kind.triangles, ".regions.stl")) as temporary:
+            body.write_regions(temporary)
+    if part == "rotor":
+        scene = stem.with_name(f"{stem.name}.rotor.glb")
+        with ledger.writing(scene, "rotor", by(Kind.triangles, ".glb")) as temporary:
+            write_glb(rotor, products.mesh, temporary)
     return miss
 
 
@@ -273,13 +288,3 @@ def _settings(blade: Blade, options: Options) -> dict[str, Any]:
         "mesh_unit": options.unit,
         "grid": asdict(options.spacing),
     }
-
-
-def _versions() -> dict[str, str]:
-    found = {}
-    for library in LIBRARIES:
-        try:
-            found[library] = version(library)
-        except PackageNotFoundError:
-            continue
-    return found

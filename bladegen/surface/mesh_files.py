@@ -8,6 +8,7 @@ import io
 import re
 import uuid
 import zipfile
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -69,8 +70,10 @@ def obj_text(mesh: TriangleMesh, header: str, *, scale: float = 1.0) -> str:
     return "\n".join([f"# {header}", *lines, ""])
 
 
-def stl_text(mesh: TriangleMesh, *, scale: float = 1.0) -> str:
-    """Return a mesh as an STL file's text, a solid a region, its lengths times `scale`.
+def stl_text(
+    mesh: TriangleMesh, *, scale: float = 1.0, names: Sequence[str] = tuple(REGIONS)
+) -> str:
+    """Return a mesh as an STL file's text, a solid a region by name, its lengths times `scale`.
 
     Vertices are written alike wherever they come, so that readers join solids at their seams.
     """
@@ -83,7 +86,7 @@ def stl_text(mesh: TriangleMesh, *, scale: float = 1.0) -> str:
     rows = np.concatenate([normals[:, None], corners * scale], axis=1).reshape(-1, 12)
     parts = []
     for number in np.unique(regions).tolist():
-        name = region_word(REGIONS[number])
+        name = region_word(names[number])
         some = rows[regions == number]
         facets = FACET * len(some) % tuple(some.ravel().tolist())
         parts.append(f"solid {name}\n{facets}endsolid {name}\n")

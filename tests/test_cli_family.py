@@ -56,6 +56,14 @@ def test_variants_that_are_not_sound_are_told_of(tmp_path):
     assert "note: 5 variants are not sound" in result.output
 
 
+def test_a_family_of_which_nothing_is_sound_has_failed(tmp_path):
+    result = run("-o", tmp_path / "f", *FEW, "--vary", "t1=5:6", "--tries", "2")
+    assert result.exit_code == 1, result.output
+    said = " ".join(str(result.exception).split())
+    assert "none of 5 variants is sound" in said
+    assert "--reach" in said
+
+
 def test_variants_are_drawn_until_they_fulfil_conditions(tmp_path):
     where = "volume > 480 and t1 < 0.05"
     result = run("-o", tmp_path / "f", *FEW, "--reach", "0.5", "--where", where)

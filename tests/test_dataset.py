@@ -301,8 +301,8 @@ def test_places_and_names_are_what_they_are_taken_for(folder):
     ):
         with pytest.raises(FamilyError, match=said):
             next(family.batches("volume", places=places))
-    with pytest.raises(FamilyError, match=r"rng: got 7, must be a numpy\.random\.Generator"):
-        next(family.batches("volume", rng=7))
+    with pytest.raises(FamilyError, match=r"rng: got 'a', must be a numpy\.random\.Generator"):
+        next(family.batches("volume", rng="a"))
     with pytest.raises(FamilyError, match="names: got none"):
         next(family.batches(()))
 

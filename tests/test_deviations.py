@@ -71,6 +71,12 @@ def test_landmarks_move_by_what_the_map_says_and_inward(blade, eroded):
     assert far[~worn].max() < 2 * CLOSE
 
 
+@pytest.mark.parametrize(("size", "depth", "of"), [(600, 0.01, "size"), (0.6, 10, "depth")])
+def test_millimetres_given_for_metres_are_refused(blade, size, depth, of):
+    with pytest.raises(BladegenError, match=rf"dent: {of}: got .* lengths are metres"):
+        DeviationMap.dent(blade, eta=0.5, u=0.2, size=size, depth=depth)
+
+
 def test_a_dent_is_as_deep_and_as_wide_as_it_is_said_to_be(blade):
     dent = DeviationMap.dent(blade, eta=0.5, u=0.2, size=0.8, depth=0.01)
     assert -dent.values.min() == pytest.approx(0.01, rel=0.1)

@@ -226,8 +226,8 @@ def test_what_cannot_be_is_refused(monkeypatch):
         space().distribution("cube")
     with pytest.raises(SpaceError, match="count: got -1"):
         distribution("box").sample(-1, np.random.default_rng(0))
-    with pytest.raises(SpaceError, match=r"rng: got 7, must be a numpy\.random\.Generator"):
-        distribution("box").sample(1, 7)
+    with pytest.raises(SpaceError, match=r"rng: got -7, must be .* or a seed"):
+        distribution("box").sample(1, -7)
     with pytest.raises(SpaceError, match=r"t: got the shape \(3,\), must be \(\.\.\., 4\)"):
         distribution("box").contains([0.0, 0.0, 0.0])
     with pytest.raises(SpaceError, match="allowed are paper, sound"):
@@ -242,3 +242,9 @@ def test_what_cannot_be_is_refused(monkeypatch):
 def test_bundled_spaces_are_named_files():
     for name in FILES:
         assert bg.ShapeSpace.load(name) == bg.ShapeSpace.bundled(name)
+
+
+@pytest.mark.parametrize("of", [space, lambda: distribution("ellipsoid")])
+def test_a_seed_draws_what_its_generator_does(of):
+    assert_array_equal(of().sample(5, 7), of().sample(5, np.random.default_rng(7)))
+    assert not np.array_equal(of().sample(5), of().sample(5))

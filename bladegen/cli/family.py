@@ -262,3 +262,8 @@ def _summary(order: Any, made: int) -> None:
     wrong = [reason for reason in manifest["reason"] if reason]
     if wrong:
         typer.echo(f"note: {len(wrong)} variants are not sound, such as: {wrong[0]}")
+    if len(valid) and not valid.any() and family.invalid == "redraw":
+        raise FamilyError(
+            f"{order.target}: none of {len(valid)} variants is sound, in all draws; give a smaller "
+            "--reach, another --space, or --invalid keep to have them as they are"
+        )

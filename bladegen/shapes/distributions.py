@@ -16,7 +16,7 @@ import numpy as np
 from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import SpaceError
 from bladegen.shapes.densities import KINDS, Density
-from bladegen.support.arguments import instance, numbers, one_of, whole
+from bladegen.support.arguments import generator, numbers, one_of, whole
 from bladegen.support.arrays import Array, Mask
 
 __all__ = ["KINDS", "Distribution", "distribution_of", "sound_at"]
@@ -54,8 +54,8 @@ class Distribution:
         only = ", sound shapes alone" if self.sound else ""
         return f"<Distribution of {self.dimension} coordinates: {self.kind}{only}>"
 
-    def sample(self, count: int, rng: np.random.Generator) -> Array:
-        """Draw coordinates (count, r).
+    def sample(self, count: int, rng: np.random.Generator | int | None = None) -> Array:
+        """Draw coordinates (count, r), by a generator of random numbers or its seed.
 
         Raises
         ------
@@ -65,13 +65,12 @@ class Distribution:
         count = whole(count, "count", SpaceError)
         if count < 0:
             raise SpaceError(f"count: got {count}, must not be negative")
-        must = "a numpy.random.Generator, such as numpy.random.default_rng(7)"
-        instance(rng, np.random.Generator, "rng", must, SpaceError)
+        random = generator(rng, "rng", SpaceError)
         if self.sound is None:
-            return self.density.carried(rng.random((count, self.dimension + 1)))
+            return self.density.carried(random.random((count, self.dimension + 1)))
         kept, tried, found = [np.empty((0, self.dimension))], 0, 0
         while found < count:
-            drawn = self.density.carried(rng.random((count, self.dimension + 1)))
+            drawn = self.density.carried(random.random((count, self.dimension + 1)))
             kept.append(drawn[self.sound(drawn)])
             found, tried = found + len(kept[-1]), tried + count
             if not found and tried > HOPELESS:

@@ -19,7 +19,7 @@ from bladegen.shapes.learning import checked, chunks, parameters, principal
 from bladegen.shapes.other_landmarks import evaluated
 from bladegen.shapes.saved_spaces import ORTHONORMAL, problem_of, read_space
 from bladegen.support.archive import save_arrays
-from bladegen.support.arguments import instance, numbers, one_of, path_of, whole
+from bladegen.support.arguments import generator, numbers, one_of, path_of, whole
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.files import beside, require_suffix
 from bladegen.support.services import shown_by
@@ -258,20 +258,20 @@ class ShapeSpace:
         """
         return grassmann.transport(self.tangent(t), self.mean[None], points)
 
-    def sample(self, count: int, rng: np.random.Generator) -> Array:
+    def sample(self, count: int, rng: np.random.Generator | int | None = None) -> Array:
         """Draw coordinates (count, r), uniform in the smallest centred ellipsoid of the data.
 
-        Its axes lie along the modes, in the ratio of the standard deviations.
+        Its axes lie along the modes, in the ratio of the standard deviations.  `rng` is a generator
+        of random numbers, or its seed.
         """
         count = whole(count, "count", SpaceError)
         if count < 0:
             raise SpaceError(f"count: got {count}, must not be negative")
-        must = "a numpy.random.Generator, such as numpy.random.default_rng(7)"
-        instance(rng, np.random.Generator, "rng", must, SpaceError)
+        random = generator(rng, "rng", SpaceError)
         spread = np.sqrt(self.variances[: self.dimension])
-        direction = rng.normal(size=(count, self.dimension))
+        direction = random.normal(size=(count, self.dimension))
         direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-        radius = rng.uniform(size=(count, 1)) ** (1.0 / self.dimension)
+        radius = random.uniform(size=(count, 1)) ** (1.0 / self.dimension)
         drawn: Array = self.extent * radius * direction * spread
         return drawn
 

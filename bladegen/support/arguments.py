@@ -20,6 +20,7 @@ __all__ = [
     "alike",
     "amount",
     "function",
+    "generator",
     "instance",
     "numbers",
     "one_of",
@@ -70,6 +71,16 @@ def function(value: Any, field: str, must: str, error: type[BladegenError]) -> A
     if not callable(value) or isinstance(value, type):
         raise error(f"{field}: got {shown(value)}, must be {must}")
     return value
+
+
+def generator(value: object, field: str, error: type[BladegenError]) -> "np.random.Generator":
+    """Return a generator of random numbers, or one of a seed; None takes a new one each time."""
+    seed = isinstance(value, Integral) and not isinstance(value, bool) and int(value) >= 0
+    if value is None or seed or isinstance(value, np.random.Generator):
+        return np.random.default_rng(value)  # type: ignore[arg-type]
+    raise error(
+        f"{field}: got {shown(value)}, must be a numpy.random.Generator, or a seed such as 7"
+    )
 
 
 def amount(value: object, field: str, error: type[BladegenError]) -> float:

@@ -182,7 +182,7 @@ class LoadedFamily:
         size: int = 64,
         *,
         places: Indices | None = None,
-        rng: np.random.Generator | None = None,
+        rng: np.random.Generator | int | None = None,
     ) -> Iterator[dict[str, Any]]:
         """Give arrays of some variants after others, by name: what a training loop reads.
 

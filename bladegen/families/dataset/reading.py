@@ -7,7 +7,7 @@ from typing import Any, SupportsIndex
 import numpy as np
 
 from bladegen.errors import FamilyError, PlaceError
-from bladegen.support.arguments import shown, whole
+from bladegen.support.arguments import generator, shown, whole
 from bladegen.support.arrays import Indices
 
 __all__ = ["arrays_at", "batches", "chosen", "named", "place_of"]
@@ -21,17 +21,13 @@ def batches(
     names: Any,
     size: int,
     places: Any,
-    rng: np.random.Generator | None,
+    rng: np.random.Generator | int | None,
 ) -> Iterator[dict[str, Any]]:
     """Give batches of a loaded family's arrays (`LoadedFamily.batches`)."""
     if whole(size, "size", FamilyError) < 1:
         raise FamilyError(f"size: got {size}, must be at least 1")
     names, wanted = named(family, names), chosen(family, places)
-    if rng is not None and not isinstance(rng, np.random.Generator):
-        raise FamilyError(
-            f"rng: got {shown(rng)}, must be a numpy.random.Generator, such as "
-            "numpy.random.default_rng(7)"
-        )
+    rng = None if rng is None else generator(rng, "rng", FamilyError)
     shard = (family["sections"].shards or family["sections"].chunks)[0]
     groups = [
         wanted[wanted // shard == number] for number in dict.fromkeys((wanted // shard).tolist())

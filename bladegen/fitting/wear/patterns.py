@@ -26,6 +26,13 @@ def erosion(blade: Blade, start: float, end: float, width: float, depth: float) 
 
 def dent(blade: Blade, eta: float, u: float, size: float, depth: float) -> Pattern:
     """Return a round hollow; see `DeviationMap.dent`."""
+    widest = float(np.max(blade.chord(np.linspace(0.0, 1.0, SPANS))))
+    for name, value in (("size", size), ("depth", depth)):
+        if not 0.0 < abs(value) <= widest or (name == "size" and value < 0.0):
+            raise BladegenError(
+                f"dent: {name}: got {value:g} m, allowed is above 0 to the largest chord, "
+                f"{widest:.3g} m; lengths are metres, such as 0.6 for 600 mm"
+            )
     reach = size / blade.length
     near = np.linspace(max(eta - reach, 0.0), min(eta + reach, 1.0), 41)
     spans = np.unique(np.concatenate([np.linspace(0.0, 1.0, SPANS // 2), near]))

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import threading
+from concurrent.futures import Future
 
 import numpy as np
 import pytest
@@ -19,30 +20,46 @@ def three(monkeypatch):
     monkeypatch.setattr(threads, "LEAST", 1)
 
 
-def test_each_share_is_called_once_the_first_in_this_thread():
-    called, names = [], {}
+def test_each_part_is_called_once_by_all_threads():
+    called, names, both = [], set(), threading.Barrier(3)
 
     def call(first, step):
+        if threading.current_thread().name not in names:
+            names.add(threading.current_thread().name)
+            both.wait(60)
         called.append((first, step))
-        names[first] = threading.current_thread().name
 
     threads.side_by_side(call, 3)
-    assert sorted(called) == [(0, 3), (1, 3), (2, 3)]
-    assert names[0] == threading.current_thread().name
-    assert names[1].startswith("shares")
+    assert sorted(called) == [(i, 12) for i in range(12)]
+    assert len(names) == 3
+    assert threading.current_thread().name in names
 
 
-def test_an_error_of_a_share_is_raised_when_all_have_ended():
-    ended = []
+def test_nobody_waits_for_a_thread_that_starts_late(monkeypatch):
+    class Late:
+        def submit(self, _):
+            return Future()
+
+    monkeypatch.setattr(threads, "_pool", Late)
+    called = []
+    threads.side_by_side(lambda first, step: called.append((first, step)), 2)
+    assert called == [(i, 8) for i in range(8)]
+
+
+def test_an_error_of_a_part_is_raised_when_all_have_ended():
+    ended, both = [], threading.Barrier(2)
 
     def call(first, _):
+        if first < 2:
+            both.wait(60)
         if first == 1:
             raise ZeroDivisionError
         ended.append(first)
 
     with pytest.raises(ZeroDivisionError):
-        threads.side_by_side(call, 4)
-    assert sorted(ended) == [0, 2, 3]
+        threads.side_by_side(call, 2)
+    assert 0 in ended
+    assert not threads._pool()._work_queue.qsize()
 
 
 @pytest.mark.parametrize(("given", "cores"), [("1", 1), ("3", 3), ("4,2", 4), ("99", threads.MOST)])
@@ -86,5 +103,5 @@ def test_a_forked_process_has_threads_of_its_own():
     if not child:
         seen = []
         threads.side_by_side(lambda first, step: seen.append(first), 3)
-        os._exit(sorted(seen) != [0, 1, 2])
+        os._exit(sorted(seen) != list(range(12)))
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0

@@ -13,12 +13,14 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, lru_cache
+from itertools import count
 from typing import Any
 
 __all__ = ["cores", "one_thread", "shares_of", "side_by_side"]
 
 MOST = 8  # threads; more of them wait for the memory
 LEAST = 50_000  # points, whose making takes ten times as long as to start a thread
+PARTS = 4  # of each thread
 _LOCK = threading.Lock()
 _HELD: list[Any] = []  # how to give the threads back, and who still needs one only
 
@@ -72,22 +74,30 @@ def shares_of(points: int) -> int:
 
 
 def side_by_side(call: Callable[[int, int], object], shares: int) -> None:
-    """Call ``call(first, step)`` for each of some shares, the first of them in this thread.
+    """Call ``call(first, step)`` for all parts of a loop, in this thread and as many others.
 
-    A share is every `step`-th of what a loop goes through, from `first` on: neighbours take
-    equally long.  It returns when all have ended; the first error is raised.
+    A part is every `step`-th of what a loop goes through, from `first` on: neighbours take equally
+    long.  Who is free takes the next part, so that nobody waits for a thread that starts late.
+    It returns when all have ended; the first error is raised.
     """
     if shares == 1:
         call(0, 1)
         return
     from concurrent.futures import wait
 
-    others = [_pool().submit(call, first, shares) for first in range(1, shares)]
+    parts, step = count(), PARTS * shares
+
+    def work() -> None:
+        while (first := next(parts)) < step:
+            call(first, step)
+
+    others = [_pool().submit(work) for _ in range(shares - 1)]
     try:
-        call(0, shares)
+        work()
     finally:
-        wait(others)
-    for other in others:
+        begun = [other for other in others if not other.cancel()]
+        wait(begun)
+    for other in begun:
         other.result()
 
 

@@ -42,21 +42,16 @@ STAMPS = """() => {
     }, true);
 }"""
 DRAWN = '.stage[data-drawn]:not([data-drawn="0"])'
-KEYS = {
-    "Shape 1 [rad]": "ArrowRight",
-    "Thickness": "ArrowRight",
-    "Twist [deg]": "ArrowLeft",
-    "Prebend": "ArrowLeft",
-    "Fade to": "ArrowRight",
-}
+SLIDERS = ("Shape 1 [rad]", "Thickness", "Twist [deg]", "Prebend", "Fade to")
+KEYS = ("ArrowRight", "ArrowLeft")  # in turns, so that no slider comes to its end
 
 
-def latencies(tab, name, key, moves):
+def latencies(tab, name, moves):
     """Milliseconds from key to drawn frame, a move at a time."""
     tab.get_by_role("slider", name=name, exact=True).focus()
     found = []
-    for _ in range(moves):
-        tab.keyboard.press(key)
+    for move in range(moves):
+        tab.keyboard.press(KEYS[move % 2])
         tab.wait_for_function("() => window.drawnAt > 0")
         found.append(tab.evaluate("() => window.drawnAt - window.pressedAt"))
     return found
@@ -156,13 +151,9 @@ def main():
         tab.goto(served[0].address)
         tab.wait_for_selector(DRAWN, timeout=120_000)
         tab.evaluate(STAMPS)
-        for name, key in KEYS.items():
-            figure(
-                "from slider to picture",
-                name.removesuffix(" [rad]"),
-                "ms",
-                latencies(tab, name, key, moves),
-            )
+        for name in SLIDERS:
+            spent = latencies(tab, name, moves)
+            figure("from slider to picture", name.removesuffix(" [rad]"), "ms", spent)
         if asked.pictures:
             shots(browser, served[0].address, asked.blade, asked.pictures)
         browser.close()

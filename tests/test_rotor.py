@@ -69,6 +69,13 @@ def test_leading_edges_go_first_clockwise_seen_from_upwind(blade, tmp_path, mirr
         assert (front - back) * sense > 0
 
 
+def test_a_spinner_has_no_sides_of_a_blade(blade, tmp_path):
+    write_glb(rotor_of(blade), mesh.from_blade(blade, stations=40), tmp_path / "r.glb")
+    children = trimesh.load_scene(tmp_path / "r.glb").graph.transforms.children
+    assert len(children["blade 1"]) == 5
+    assert len(children.get("spinner", ["its own"])) == 1
+
+
 def test_the_assembly_has_named_parts_that_are_valid(blade, tmp_path):
     solid = solids.solid(blade, sections=40)
     rotor = rotor_of(blade)

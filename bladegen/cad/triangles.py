@@ -37,7 +37,7 @@ def triangulated(shape: Any, deflection: float) -> TriangleMesh:
     CadError
         If OCCT makes no triangles of it.
     """
-    return by_face(shape, members(shape, "face"), deflection)
+    return replace(by_face(shape, members(shape, "face"), deflection), regions=None)
 
 
 def by_face(shape: Any, faces: Sequence[Any], deflection: float) -> TriangleMesh:

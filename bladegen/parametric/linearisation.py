@@ -13,7 +13,7 @@ from bladegen.airfoils.chord_lines import KEPT
 from bladegen.parametric.chain import Chain
 from bladegen.parametric.outline import Outline
 from bladegen.parametric.parameters import Parameters
-from bladegen.support.arrays import Array, Indices
+from bladegen.support.arrays import Array, Indices, laid_out
 from bladegen.support.threads import shares_of, side_by_side
 
 __all__ = ["Linearisation"]
@@ -59,7 +59,7 @@ class Linearisation:
         changes = np.empty((*raw.shape[:2], self.parameters.modes + 1, *raw.shape[2:]))
         given = [batch.blade.u, outline.landmarks, outline.slopes, raw]
         given += [parts.weighted(t, batch.weight), parts.gram, parts.shapes[2], target]
-        given = _laid_out(*given, standing, moving)
+        given = laid_out(*given, standing, moving)
         kept = batch.chord_line == KEPT
         side_by_side(
             partial(kernels.linearised, *given, kept, result, changes),
@@ -75,7 +75,7 @@ class Linearisation:
         plain = batch.parts.plain[rows]
         raw, result = np.repeat(plain, target.shape[1], axis=1), np.zeros((*target.shape, 4))
         given = [batch.blade.u, batch.features[rows], batch.parts.slopes[rows], raw, target]
-        kernels.lines_slopes(*_laid_out(*given), result)
+        kernels.lines_slopes(*laid_out(*given), result)
         return result
 
     def points(
@@ -93,9 +93,9 @@ class Linearisation:
         shape = (*width.shape, values.shape[-1], 3)
         sections, result = np.empty(shape), np.empty((*shape, chain.shape[-1]))
         to_space = self.chain.space[0] if to_space is None else to_space
-        given = _laid_out(width, to_space, chain, width_chain, space_chain)
-        laid_out = *_laid_out(values), c, changes, kind, *given, sections, result
-        side_by_side(partial(kernels.points_slopes, *laid_out), shares_of(result.size))
+        placed = laid_out(width, to_space, chain, width_chain, space_chain)
+        given = *laid_out(values), c, changes, kind, *placed, sections, result
+        side_by_side(partial(kernels.points_slopes, *given), shares_of(result.size))
         return sections, result
 
     def jacobian(self) -> tuple[Array, Array]:
@@ -134,18 +134,10 @@ class Linearisation:
         shape = width.shape
         own, in_width = np.empty((*shape, changes.shape[2])), np.empty(shape)
         in_space = np.empty((*shape, 3, 3))
-        given = _laid_out(width, self.chain.space[0], gradient)
-        laid_out = (
-            *_laid_out(self.outline.values),
-            c,
-            changes,
-            kind,
-            *given,
-            own,
-            in_width,
-            in_space,
-        )
-        side_by_side(partial(kernels.points_gradient, *laid_out), shares_of(gradient.size))
+        placed = laid_out(width, self.chain.space[0], gradient)
+        made = own, in_width, in_space
+        given = *laid_out(self.outline.values), c, changes, kind, *placed, *made
+        side_by_side(partial(kernels.points_gradient, *given), shares_of(gradient.size))
         parts = (
             np.einsum(how, given, way)
             for how, given, way in zip(
@@ -163,8 +155,3 @@ class Linearisation:
         shape = self.chain.target.shape
         none = [np.zeros((*shape, *size, 0)) for size in ((self.parameters.modes + 1,), (), (3, 3))]
         return self.points(*none)[0]
-
-
-def _laid_out(*arrays: Array) -> list[Array]:
-    """Return arrays as the kernels are compiled for, contiguous and not read-only."""
-    return [np.require(array, requirements=["C", "W"]) for array in arrays]

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Array", "ArrayLike", "Indices", "Mask", "mapped", "readonly"]
+__all__ = ["Array", "ArrayLike", "Indices", "Mask", "laid_out", "mapped", "readonly"]
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -18,6 +18,14 @@ def readonly(values: Any) -> Array:
     array = np.array(values, dtype=np.float64)
     array.flags.writeable = False
     return array
+
+
+def laid_out(*arrays: Any) -> list[Any]:
+    """Return arrays as compiled loops are compiled for, contiguous and not read-only.
+
+    Numba compiles anew for arrays that lie otherwise, and sums otherwise.
+    """
+    return [np.require(array, requirements=["C", "W"]) for array in arrays]
 
 
 def mapped(points: Array, A: Array, c: Array) -> Array:

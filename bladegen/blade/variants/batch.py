@@ -25,7 +25,7 @@ from bladegen.curves.crossing import crossing_sections
 from bladegen.shapes import affine
 from bladegen.shapes.domain import Domain
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.support.arrays import Array, Indices, readonly
+from bladegen.support.arrays import Array, Indices, laid_out, readonly
 from bladegen.support.threads import side_by_side
 
 __all__ = ["FAULTS", "LOST_THICKNESS", "Batch", "SectionBatch"]
@@ -257,9 +257,8 @@ class SectionBatch:
         ]
         flat = self._plain_ruling[:, None] / target
         given += [own, known, chord, to_space, sections, measures, edge, flat, looks]
-        # Numba compiles anew for arrays that are read-only or lie otherwise, and sums otherwise
-        laid_out = (np.require(values, requirements=["C", "W"]) for values in given)
-        side_by_side(partial(kernels.made, *laid_out, self.chord_line == KEPT), shares)
+        kept = self.chord_line == KEPT
+        side_by_side(partial(kernels.made, *laid_out(*given), kept), shares)
         return self._faults(raw, own, known) if known.size else known
 
     def _faults(self, raw: Array, own: Array, known: Indices) -> Indices:

@@ -7,7 +7,7 @@ import numpy as np
 
 from bladegen.airfoils.chord_lines import KEPT, ChordLines, Motions
 from bladegen.blade.variants.features import Features
-from bladegen.support.arrays import Array, Indices, Mask
+from bladegen.support.arrays import Array, Indices, Mask, laid_out
 
 __all__ = ["Standing"]
 
@@ -70,5 +70,5 @@ class Standing:
         raw = np.repeat(features.plain[rows], shape[1], axis=1)
         given = features.blade.u, features.values[rows], features.slopes[rows], raw, target
         result = np.empty((*shape, 4))
-        kernels.lines(*(np.require(values, requirements=["C", "W"]) for values in given), result)
+        kernels.lines(*laid_out(*given), result)
         return result

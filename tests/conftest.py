@@ -5,8 +5,10 @@ HYPOTHESIS_PROFILE is `steady`, the same examples on every run; `thorough`, more
 
 Matrix products take one thread, unless OMP_NUM_THREADS says otherwise: tests run side by side
 already, and threads that wait for each other spin, for two to four times the processor's time.
+Python looks for garbage seldom, and never among what is loaded once all tests are collected.
 """
 
+import gc
 import os
 
 os.environ["OMP_NUM_THREADS"] = os.environ.get("OMP_NUM_THREADS", "1")
@@ -22,10 +24,16 @@ from hypothesis import settings
 
 from bladegen.measures import foreign, foreign_reader
 
+gc.set_threshold(50_000, 10, 10)
 settings.register_profile("steady", deadline=None, max_examples=15, derandomize=True)
 settings.register_profile("thorough", deadline=None, max_examples=100, derandomize=True)
 settings.register_profile("explore", deadline=None, max_examples=200, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
+
+
+def pytest_collection_finish():
+    """Half a million objects of libraries and tests stay to the end."""
+    gc.freeze()
 
 
 def uncounted(call):

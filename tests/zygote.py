@@ -18,6 +18,7 @@ It reads one request a line from stdin, a JSON list of jobs that run at once, an
 """
 
 import ctypes
+import gc
 import importlib
 import json
 import os
@@ -186,6 +187,7 @@ def serve() -> None:
     import bladegen
 
     bladegen.read("nrel5mw")  # with what its format's row imports
+    gc.freeze()  # forks leave it where it is, and share its pages
     answers.write("ready\n")
     answers.flush()
     for line in sys.stdin:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -10,6 +12,7 @@ from bladegen.cli.view import What
 from bladegen.errors import BladegenError
 from bladegen.views import preview, sweep
 from bladegen.views.plots.blade_plots import PLOTS
+from bladegen.views.plots.figures import figure
 from bladegen.views.rendering import keys
 
 pytestmark = pytest.mark.usefixtures("foreign_here")
@@ -110,13 +113,17 @@ def test_preview_compares_two(tmp_path, monkeypatch):
     assert shown[0][1] == {"colour": "distance"}
 
 
-def test_plot_writes_a_file_a_diagram(tmp_path):
+def test_plot_writes_a_file_a_diagram(tmp_path, monkeypatch):
+    plain = replace(PLOTS["path"], draw=lambda *_: figure(1, 1, width=2, height=2)[0])
+    for name in {*PLOTS} - {"path"}:  # what each of them draws tells test_blade_plots
+        monkeypatch.setitem(PLOTS, name, plain)
     result = run("plot", "nrel5mw", "-o", tmp_path / "out", "--format", "svg", "--landmarks", 101)
     assert result.exit_code == 0, result.output
     names = sorted(file.name for file in (tmp_path / "out").iterdir())
     others = {What.all, What.volume}  # what may be refused is to be asked for
     assert names == sorted(f"nrel5mw-{what}.svg" for what in What if what not in others)
-    assert "<svg" in (tmp_path / "out" / "nrel5mw-path.svg").read_text(encoding="utf-8")
+    assert "Grassmannian" in (tmp_path / "out" / "nrel5mw-path.svg").read_text(encoding="utf-8")
+    assert "<svg" in (tmp_path / "out" / "nrel5mw-grid.svg").read_text(encoding="utf-8")
 
 
 def test_plot_writes_one_file(tmp_path):

@@ -38,7 +38,7 @@ PACKAGES = {
     "PIL": "pillow",
     "yaml": "pyyaml",
     "neuralfoil": "'bladegen[aero]'",
-    **{extra: f"'bladegen[{extra}]'" for extra in ("openmdao", "torch", "jax", "xarray")},
+    **{extra: f"'bladegen[{extra}]'" for extra in ("openmdao", "torch", "jax", "wisdem", "xarray")},
     "sklearn": "'bladegen[stats]' (scikit-learn)",
 }
 

@@ -31,6 +31,7 @@ from bladegen.surface.tips import round_tip
 SMALL = Spacing(around=33, along=9, edge=4, leading_edge=0.02, trailing_edge=0.02, root=0.1)
 SILENT = {".p3d", ".fmt", ".volume.p3d", ".volume.fmt"}  # PLOT3D has no place for words
 SLOW = {".png", ".stp", ".igs", ".dat", ".htc"}  # tested by themselves, or as others
+SLOW |= {suffix for suffix, row in FORMATS.items() if row.kind is Kind.beam}  # test_beam
 SUFFIXES = tuple(suffix for suffix in FORMATS if suffix not in SLOW)
 COMMAND = "bladegen build nrel5mw --tip round"
 WORDS = st.text(st.characters(codec="utf-8"), max_size=40)

@@ -116,7 +116,7 @@ def test_without_wisdem_the_adapter_says_what_to_install():
     code = "import sys; sys.modules['wisdem'] = None; import bladegen.wisdem"
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert "this needs wisdem" in told.stderr
-    assert "pip install wisdem" in told.stderr
+    assert "pip install 'bladegen[wisdem]'" in told.stderr
 
 
 @pytest.fixture(scope="module")

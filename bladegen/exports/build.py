@@ -24,6 +24,7 @@ from bladegen.exports.options import Kind, Options
 from bladegen.exports.products import Products, require
 from bladegen.exports.provenance import Provenance, word
 from bladegen.exports.registry import FORMATS, format_of, suffix_of
+from bladegen.exports.writers import beams
 from bladegen.formats import writing as writers
 from bladegen.measures import checks
 from bladegen.measures.spanwise import spanwise, write_csv
@@ -228,6 +229,8 @@ def _measure(report: dict[str, Any], products: Products, kind: Kind, path: Path)
     elif kind is Kind.structure:
         inside = products.inside
         report["structure"] = {"faces_m2": inside.areas, "inner_surface": inside.wall}
+    elif kind is Kind.beam:
+        report.setdefault("beam", beams.figures(products))
     elif path.suffix in _MESHES:
         figures = checks.mesh_figures(mesh_files.read(path))
         report.setdefault("meshes", {})[suffix_of(path).lstrip(".")] = figures

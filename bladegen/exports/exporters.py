@@ -47,6 +47,7 @@ def export(
     extrusion: Extrusion | None = None,
     element: float = Options.element,
     laminates: bool = Options.laminates,
+    openfast: int = Options.openfast,
     polars: str | None = None,
     reynolds: float | None = None,
     command: str = "",
@@ -94,6 +95,8 @@ def export(
         Shell models: size of the elements [m], 0.02 to 20.
     laminates : bool
         Shell models: composite sections, layer by layer, which Abaqus takes and CalculiX does not.
+    openfast : int
+        Beam properties for OpenFAST: 5, or 4 for it and what was before.
     polars : str, optional
         Definitions: where polars are from, as for `bladegen.write`.
     reynolds : float, optional
@@ -138,6 +141,7 @@ def export(
         "extrusion": Extrusion() if extrusion is None else extrusion,
         "element": element,
         "laminates": laminates,
+        "openfast": openfast,
         "polars": polars,
         "reynolds": reynolds,
         "command": command,
@@ -173,7 +177,7 @@ def _write(products: Products, path: Path) -> None:
             )
     suffix = suffix_of(path)
     try:
-        if row.kind is Kind.definition:
+        if row.kind in (Kind.definition, Kind.beam):
             row.write(products, target)
         else:
             with replacing(target) as temporary:

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
+from bladegen.blade.layup.beam.openfast import LATEST
 from bladegen.cad import exchange, solids, step_documents
 from bladegen.errors import ExportError
 from bladegen.exports.provenance import word
@@ -39,6 +40,7 @@ class Kind(StrEnum):
     volume = "volume"
     shell = "shell"
     structure = "structure"
+    beam = "beam"
     definition = "definition"
     table = "table"
     picture = "picture"
@@ -83,6 +85,8 @@ class Options:
         Shell models: size of the elements [m].
     laminates : bool
         Shell models: composite sections, layer by layer, which CalculiX does not take.
+    openfast : int
+        Beam properties for OpenFAST: 5, or 4 for it and what was before.
     polars, reynolds : optional
         Definitions: where polars are from, as for `formats.writing.write`.
     """
@@ -103,6 +107,7 @@ class Options:
     extrusion: Extrusion = field(default_factory=Extrusion)
     element: float = 1.0
     laminates: bool = False
+    openfast: int = LATEST
     polars: str | None = None
     reynolds: float | None = None
     command: str = ""
@@ -120,6 +125,10 @@ class Options:
         whole(self.stations, "stations", ExportError)
         if self.sections is not None:
             whole(self.sections, "sections", ExportError)
+        if self.openfast not in (LATEST - 1, LATEST):
+            raise ExportError(
+                f"openfast: got {self.openfast!r}, allowed are 5, and 4 for it and what was before"
+            )
         for name in ("author", "organisation"):
             must = "text, such as 'Ada Lovelace'"
             instance(getattr(self, name), str, name, must, ExportError)
@@ -157,8 +166,8 @@ class Options:
             found["tip"] = word(self.tip)
         if kind in (Kind.triangles, Kind.grid, Kind.volume):
             found["unit"] = _FIXED_UNITS.get(suffix, self.unit)
-        if kind is Kind.shell:
-            found |= {"element": word(self.element), "laminates": word(self.laminates)}
+        own = {Kind.shell: ("element", "laminates"), Kind.beam: ("openfast",)}
+        found |= {name: word(getattr(self, name)) for name in own.get(kind, ())}
         if kind is Kind.definition:
             given = {"polars": self.polars, "reynolds": self.reynolds}
             found |= {key: word(value) for key, value in given.items() if value is not None}

@@ -6,6 +6,8 @@ from functools import cached_property
 from pathlib import Path
 
 from bladegen.blade.blade import Blade
+from bladegen.blade.layup.beam.precomp import beam_properties, require_solver
+from bladegen.blade.layup.beam.properties import BeamProperties
 from bladegen.blade.layup.layup import Layup
 from bladegen.blade.layup.shell.model import ShellModel, shell_model
 from bladegen.cad import solids
@@ -22,7 +24,11 @@ from bladegen.surface.volumes import volume
 
 __all__ = ["Products", "require"]
 
-INSIDE = {Kind.structure: "a structure in CAD", Kind.shell: "a shell model"}
+INSIDE = {
+    Kind.structure: "a structure in CAD",
+    Kind.shell: "a shell model",
+    Kind.beam: "a table of beam properties",
+}
 
 
 def require(blade: Blade, kind: Kind) -> None:
@@ -31,13 +37,15 @@ def require(blade: Blade, kind: Kind) -> None:
     Raises
     ------
     ExportError
-        As said, with what has some.
+        As said, with what has some; `MissingLibraryError` if what makes it is not installed.
     """
     if kind in INSIDE and blade.layup is None:
         raise ExportError(
             f"{blade.name}: its definition has no webs and layers, of which {INSIDE[kind]} "
             "is made; iea15mw and nrel5mw have some, and turbine files of windIO"
         )
+    if kind is Kind.beam:
+        require_solver()
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +114,13 @@ class Products:
         model = shell_model(layup, self.options.element)
         self.remarks.extend(model.findings)
         return model
+
+    @cached_property
+    def beam(self) -> BeamProperties:
+        """Mass and stiffness over span."""
+        self._layup(Kind.beam)
+        self.progress("finding beam properties")
+        return beam_properties(self.blade)
 
     def made_from(self, kind: Kind, suffix: str) -> Provenance:
         """Return what a file of a kind and suffix is made from."""

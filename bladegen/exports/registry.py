@@ -13,7 +13,7 @@ from pathlib import Path
 from bladegen.errors import ExportError
 from bladegen.exports.options import Kind
 from bladegen.exports.products import Products
-from bladegen.exports.writers import others, solids, surfaces
+from bladegen.exports.writers import beams, others, solids, surfaces
 from bladegen.support.arguments import suggestion
 from bladegen.support.plugins import Offered, guarded, offered
 
@@ -36,8 +36,8 @@ class Format:
         What it is, in a line.
     write : callable
         From a blade's products to a temporary path, which is renamed when it is whole; those of
-        definitions get the final one, since they write companions named after it and replace all
-        by themselves.
+        definitions and of beams get the final one, since their files name or write companions that
+        are named after it, and replace all by themselves.
     suffix : str
         Of a plug-in's row: the suffix of its files, lower case, with its dot.
     """
@@ -115,6 +115,24 @@ FORMATS = {
         Kind.shell,
         "shell model of skin and webs for CalculiX and Abaqus, m, N, kg",
         others.write_inp,
+    ),
+    ".elastodyn_blade.dat": Format(
+        Kind.beam,
+        "OpenFAST, ElastoDyn's blade file: mass, stiffness, mode shapes",
+        beams.write_elastodyn_blade,
+    ),
+    ".beamdyn_blade.dat": Format(
+        Kind.beam, "OpenFAST, BeamDyn's blade file: 6 x 6 matrices", beams.write_beamdyn_blade
+    ),
+    ".beamdyn.dat": Format(
+        Kind.beam,
+        "OpenFAST, BeamDyn's main input: axis and twist; names NAME.beamdyn_blade.dat",
+        beams.write_beamdyn,
+    ),
+    ".beam.csv": Format(
+        Kind.beam,
+        "beam properties as a table: mass, stiffness, matrices over span",
+        beams.write_beam,
     ),
     ".sections.csv": Format(
         Kind.table, "sections as a table: eta, landmark, u, x, y, z, m", others.write_csv

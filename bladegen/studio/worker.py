@@ -29,6 +29,7 @@ GROUPS = {
     Kind.volume: "CFD grids",
     Kind.definition: "Aeroelastic and structural tools",
     Kind.shell: "Aeroelastic and structural tools",
+    Kind.beam: "Aeroelastic and structural tools",
     Kind.table: "Data",
     Kind.picture: "Pictures",
 }

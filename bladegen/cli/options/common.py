@@ -62,8 +62,9 @@ Formats = Annotated[
         "--format",
         help="CAD: step iges brep curves.step structure.step; triangles: stl regions.stl glb ply "
         "obj 3mf vtp; grids: p3d fmt cgns vtu; volumes: volume.cgns volume.p3d volume.fmt "
-        "volume.foam.zip; shells: inp; definitions: yaml (windIO 2) dat "
-        "(OpenFAST) htc (HAWC2) csv xlsx; sections.csv; png. Several with commas, or repeated.",
+        "volume.foam.zip; shells: inp; beams: elastodyn_blade.dat beamdyn_blade.dat beamdyn.dat "
+        "beam.csv; definitions: yaml (windIO 2) dat (OpenFAST) htc (HAWC2) csv xlsx; "
+        "sections.csv; png. Several with commas, or repeated.",
     ),
 ]
 Landmarks = Annotated[int, typer.Option(help="Landmarks a section, odd.")]

@@ -45,6 +45,14 @@ class StepSchema(StrEnum):
 
 Element = Annotated[str, typer.Option(metavar="LENGTH", help="Of a shell's elements (inp).")]
 Laminates = Annotated[bool, typer.Option("--laminates", help="Shells layer by layer (Abaqus).")]
+OpenFast = Annotated[
+    int,
+    typer.Option(
+        "--openfast",
+        metavar="4|5",
+        help="Whose ElastoDyn and BeamDyn read beam properties; 4 for those before, too.",
+    ),
+]
 SIDE = "Cell at that edge over the side's length, about the chord."
 SPAN = "Cell at that end over the length."
 _spacing = partial(typer.Option, rich_help_panel=GRIDS)
@@ -135,6 +143,7 @@ class Producing:
     ] = 1.0
     element: Element = "1m"
     laminates: Laminates = False
+    openfast: OpenFast = 5
     polars: Polars = None
     reynolds: Reynolds = None
 
@@ -169,6 +178,7 @@ class Producing:
             unit=self.unit,
             element=metres(self.element, "element", example="1m"),
             laminates=self.laminates,
+            openfast=self.openfast,
             polars=self.polars,
             reynolds=self.reynolds,
             extrusion=Extrusion(

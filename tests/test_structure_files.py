@@ -170,6 +170,44 @@ def test_what_a_material_costs_goes_along(plain):
         assert materials == [foam]
 
 
+def test_orthotropic_materials_have_three_figures_even_if_they_are_equal():
+    """IEA 10 MW's biax, whose Poisson's ratio windIO 2 allows of no isotropic material."""
+    plain = bg.read("iea15mw")
+    biax = bg.Material(
+        "biax", 1845.0, (1.39e10,) * 3, (1.15e10,) * 3, (0.533,) * 3, orthotropic=True
+    )
+    layer = plain.structure.layers[0]
+    structure = bg.Structure((biax,), (), (replace(layer, material="biax"),))
+    for write in (writing1.document, writing2.document):
+        _, (made,) = write(replace(plain, structure=structure), lambda *_: None)
+        assert (made["orth"], made["nu"]) == (1, [0.533] * 3)
+        assert made["E"] == [1.39e10] * 3
+
+
+@pytest.mark.parametrize(
+    ("layer", "said"),
+    [
+        (
+            {"material": "glas_uni"},
+            "material glas_uni is not known; x is left out; did you mean glass_uni",
+        ),
+        ({"web": "Web-0"}, "web Web-0 is not known; x is left out; did you mean web0"),
+    ],
+)
+def test_a_name_that_is_nearly_known_is_suggested(layer, said):
+    one = {
+        "name": "x",
+        "material": "glass_uni",
+        "thickness": {"grid": [0, 1], "values": [0.01] * 2},
+    }
+    ends = {"start_nd_arc": {"grid": [0, 1], "values": [0, 0]}}
+    ends["end_nd_arc"] = {"grid": [0, 1], "values": [1, 1]}
+    webs = [{"name": "web0", **ends}]
+    glass = {"name": "glass_uni", "rho": 1900.0, "orth": 0}
+    _, findings = read(1, {"webs": webs, "layers": [one | ends | layer]}, [glass])
+    assert any(said in str(finding) for finding in findings)
+
+
 def test_a_format_without_a_place_for_it_says_so(plain, tmp_path):
     structure, _ = read(1, WAYS[1])
     said = bg.write(replace(plain, structure=structure), tmp_path / "blade.csv")

@@ -15,6 +15,7 @@ from bladegen.definition.structure.positions import Arc, Position, Shifted
 from bladegen.definition.structure.structure import Axes, Layer, Material, Stated, Structure, Web
 from bladegen.errors import DefinitionError
 from bladegen.formats.common.document import FRACTION, Node, Notes, Range
+from bladegen.support.arguments import suggestion
 
 __all__ = [
     "ARC",
@@ -179,13 +180,16 @@ def assembled(
     webs = _once(inside, "webs", web)
     layers = _once(inside, "layers", layer)
     materials = _materials(root, [one.material for one in layers.values()])
+    names = [_name(Node(value, "", root.notes)) for value in _listed(root)]
     kept = []
     for place, one in layers.items():
         node = Node(None, place, inside.notes)
         if one.material not in materials:
-            node.finding(f"material {one.material} is not known; {one.name} is left out")
+            meant = suggestion(one.material, names)
+            node.finding(f"material {one.material} is not known; {one.name} is left out{meant}")
         elif one.web and one.web not in {known.name for known in webs.values()}:
-            node.finding(f"web {one.web} is not known; {one.name} is left out")
+            meant = suggestion(one.web, [known.name for known in webs.values()])
+            node.finding(f"web {one.web} is not known; {one.name} is left out{meant}")
         else:
             kept.append(one)
     if not (webs or kept):
@@ -222,9 +226,8 @@ def _once(inside: Node, kind: str, read: Callable[[Node], T | None]) -> dict[str
 def _materials(root: Node, wanted: Iterable[str]) -> dict[str, Material]:
     """Return the materials that layers name, and those that bond them, in the order of the file."""
     names = {*wanted, *BONDS}
-    listed = root.value.get("materials") if isinstance(root.value, dict) else None
     found: dict[str, Material] = {}
-    for i, value in enumerate(listed if isinstance(listed, list) else ()):
+    for i, value in enumerate(_listed(root)):
         node = Node(value, f"materials[{i}]", root.notes)
         name = _name(node)
         if name in names and name not in found:
@@ -232,6 +235,11 @@ def _materials(root: Node, wanted: Iterable[str]) -> dict[str, Material]:
             if made is not None:
                 found[name] = made
     return found
+
+
+def _listed(root: Node) -> list[object]:
+    listed = root.value.get("materials") if isinstance(root.value, dict) else None
+    return listed if isinstance(listed, list) else []
 
 
 def _material(node: Node) -> Material | None:

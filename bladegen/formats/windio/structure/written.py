@@ -153,7 +153,7 @@ def materials(those: Iterable[Material]) -> list[Document]:
             "orth": int(one.orthotropic),
             "rho": one.density,
             **{
-                key: _figures(getattr(one, ours))
+                key: _figures(getattr(one, ours), one.orthotropic)
                 for key, ours in HELD.items()
                 if getattr(one, ours) is not None
             },
@@ -164,5 +164,6 @@ def materials(those: Iterable[Material]) -> list[Document]:
     ]
 
 
-def _figures(axes: Axes) -> float | list[float]:
-    return axes[0] if len(set(axes)) == 1 else [*axes]
+def _figures(axes: Axes, orthotropic: bool) -> float | list[float]:
+    """Return three figures, or one: of isotropic materials, whose nu windIO 2 limits to 0.5."""
+    return axes[0] if len(set(axes)) == 1 and not orthotropic else [*axes]

@@ -14,8 +14,8 @@ import numpy as np
 
 from bladegen.errors import FamilyError, MissingLibraryError, PerturbationError
 from bladegen.families.dataset.loading import LoadedFamily
-from bladegen.families.dataset.reading import arrays_at, chosen, named
-from bladegen.parametric.adapters.outputs import Evaluated, Outputs
+from bladegen.families.dataset.reading import arrays_at, chosen, named, of_numbers
+from bladegen.parametric.adapters.outputs import FIRST_ONLY, Evaluated, Outputs
 from bladegen.parametric.model import ParametricBlade
 from bladegen.support.arguments import instance
 
@@ -55,6 +55,7 @@ class BladeFunction:
     def _made(self) -> Outputs:
         return Outputs(self.model, self.outputs)
 
+    @torch.compiler.disable  # type: ignore[untyped-decorator]  # NumPy computes what it returns
     def __call__(self, x: Any) -> dict[str, Any]:
         """Return outputs (..., *shape) at a tensor x (..., p).
 
@@ -126,7 +127,11 @@ class _First(Function):  # type: ignore[misc]
 
     @staticmethod
     def backward(*_: Any) -> Any:
-        raise PerturbationError("bladegen knows first derivatives only; create_graph=False")
+        raise PerturbationError(FIRST_ONLY)
+
+    @staticmethod
+    def jvp(*_: Any) -> Any:
+        raise PerturbationError(FIRST_ONLY)
 
 
 class _Back(_First):
@@ -185,10 +190,8 @@ class FamilyDataset(Dataset):  # type: ignore[misc]
         instance(family, LoadedFamily, "family", must, FamilyError)
         self.family, self.names, self.dtype = family, named(family, names), dtype
         self.places = chosen(family, places)
-        for name in self.names:
-            kind = family.parameters.dtype if name == "parameters" else family[name].dtype
-            if kind.kind not in "biuf":
-                raise FamilyError(f"names: {name!r} holds texts, must be numbers or True and False")
+        of_numbers(family, self.names)
+        instance(dtype, torch.dtype, "dtype", "a torch.dtype, such as torch.float32", FamilyError)
 
     def __len__(self) -> int:
         return len(self.places)

@@ -301,27 +301,37 @@ def test_places_and_names_are_what_they_are_taken_for(folder):
     ):
         with pytest.raises(FamilyError, match=said):
             next(family.batches("volume", places=places))
+    assert len(next(family.batches("volume", 8.0))["volume"]) == 8
+    with pytest.raises(FamilyError, match="where: got 3, must be a text, such as 'volume > 600"):
+        family.where(3)
+    with pytest.raises(FamilyError, match=r"shares: got \{.* must be three that sum to 1"):
+        family.split("train", shares={"train": 0.8, "validation": 0.1, "test": 0.1})
+    assert len(bg.load_family(folder / "manifest.parquet")) == len(family)
     with pytest.raises(FamilyError, match=r"rng: got 'a', must be a numpy\.random\.Generator"):
         next(family.batches("volume", rng="a"))
     with pytest.raises(FamilyError, match="names: got none"):
         next(family.batches(()))
 
 
-def test_rows_are_read_in_runs_and_come_in_the_order_asked_for():
-    """Variants of shards that lie apart were read one by one: an epoch took 18 s instead of 3."""
-    from bladegen.families.dataset.reading import arrays_at
+@pytest.mark.parametrize(("near", "runs"), [(16, 3), (2**20, 1)])
+def test_rows_are_read_in_runs_and_come_in_the_order_asked_for(monkeypatch, near, runs):
+    """Variants that lie apart were read one by one, and numbers of 8 bytes each in a read."""
+    from bladegen.families.dataset import reading
 
     asked = []
+    monkeypatch.setattr(reading, "NEAR", near)  # bytes between two rows
 
     class Store:
+        dtype, shape = np.dtype(np.float64), (1000,)
+
         def __getitem__(self, rows):
             asked.append((rows.start, rows.stop))
             return np.arange(1000.0)[rows]
 
     rng = np.random.default_rng(3)
     places = rng.permutation(np.concatenate([np.arange(64), np.arange(700, 764), [999, 999]]))
-    assert_array_equal(arrays_at({"x": Store()}, ("x",), places)["x"], places)
-    assert asked == [(0, 64), (700, 764), (999, 1000)]
+    assert_array_equal(reading.arrays_at({"x": Store()}, ("x",), places)["x"], places)
+    assert asked == ([(0, 64), (700, 764), (999, 1000)] if runs == 3 else [(0, 1000)])
 
 
 def test_what_a_dataset_says_of_itself_fits_into_netcdf(folder):

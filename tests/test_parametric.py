@@ -387,6 +387,8 @@ def test_vectors_and_gradients_of_another_kind_are_refused():
         model.sections(np.zeros(3))
     with pytest.raises(PerturbationError, match="x: must be finite"):
         model.sections(np.full(11, np.nan))
+    with pytest.raises(PerturbationError, match=r"dx: got .* must be of shape \(11,\), as x"):
+        model.jvp(model.baseline, np.zeros(3))
     with pytest.raises(PerturbationError, match=r"g: got .* must be of shape \(17, 401, 3\)"):
         model.vjp(model.baseline, np.zeros(3))
     with pytest.raises(PerturbationError, match="thickness: got 9, allowed is"):
@@ -400,6 +402,27 @@ def test_vectors_and_gradients_of_another_kind_are_refused():
     odd = blade.with_trailing_edge(lambda profiles, chord: profiles)
     with pytest.raises(PerturbationError, match="derivatives are known of MinimumThickness"):
         bg.ParametricBlade(odd, space()).jacobian(np.zeros(4))
+
+
+def test_numbers_with_names_are_taken_by_name():
+    """A Series or a table in another order was taken by place, and a mapping was refused."""
+    pandas = pytest.importorskip("pandas")
+    model = bg.ParametricBlade(blade_of("iea15mw"), space(), ("pga", "chord"), eta=[0.6])
+    x = model.baseline + np.array([0.01, -0.02, 0.005, 0.0, 0.03])
+    wanted, along = model.sections(x), model.jvp(x, x)
+    series = pandas.Series(x, index=model.names)[::-1]
+    table = pandas.DataFrame([x, x], columns=["t1", "t2", "t3", "t4", "chord"]).iloc[:, ::-1]
+    for given_ in (series, series.to_dict(), pandas.Series(x)):
+        assert_array_equal(model.sections(given_), wanted)
+        assert_array_equal(model.jvp(x, given_), along)
+    assert_array_equal(model.sections(table), np.stack([wanted, wanted]))
+    for given_, said in (
+        ({"chord": 1.0}, r"x: has no 'pga\[0\]'; names must be pga\[0\], .*, chord, in any order"),
+        (table.drop(columns="t2"), r"x: has no 'pga\[1\]'"),
+        (table.assign(volume=1.0), "x: has 'volume', which is no parameter"),
+    ):
+        with pytest.raises(PerturbationError, match=said):
+            model.quantities(given_)
 
 
 @given(st.floats(0.21, 4.9))

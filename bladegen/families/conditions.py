@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import FamilyError
-from bladegen.support.arguments import suggestion
+from bladegen.support.arguments import shown, suggestion
 from bladegen.support.arrays import Array, Mask
 
 __all__ = ["called", "factor_numbers", "matching", "named", "numbers"]
@@ -93,6 +93,8 @@ def named(text: str) -> tuple[str, ...]:
 
 def _parsed(text: str) -> list[tuple[str, str, float]]:
     """Return names, operators and numbers of conditions."""
+    if not isinstance(text, str):
+        raise FamilyError(f"where: got {shown(text)}, must be a text, such as 'volume > 600'")
     found = []
     for part in AND.split(text.strip()):
         match = CONDITION.fullmatch(part)

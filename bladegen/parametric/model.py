@@ -30,7 +30,7 @@ from bladegen.parametric import outputs
 from bladegen.parametric.chain import change_of
 from bladegen.parametric.linearisation import Linearisation
 from bladegen.parametric.outline import Outline
-from bladegen.parametric.parameters import Parameters
+from bladegen.parametric.parameters import Parameters, by_name
 from bladegen.parametric.quantities import Quantities
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import instance, numbers, shown
@@ -165,16 +165,20 @@ class ParametricBlade:
 
     def _vectors(self, x: ArrayLike) -> tuple[Array, tuple[int, ...]]:
         """Return vectors as (b, p), and the shape (...) that they have."""
-        values = numbers(x, "x", PerturbationError)
-        count = len(self.names)
-        if not values.ndim or values.shape[-1] != count:
-            raise PerturbationError(
-                f"x: got {shown(values)}, must be {count} numbers or arrays (..., {count}): "
-                f"{', '.join(self.names)}"
-            )
+        values = numbers(by_name(x, self.names), "x", PerturbationError)
+        self.require_shape(values.shape)
         if not bool(np.isfinite(values).all()):
             raise PerturbationError("x: must be finite")
-        return values.reshape(-1, count), values.shape[:-1]
+        return values.reshape(-1, len(self.names)), values.shape[:-1]
+
+    def require_shape(self, shape: tuple[int, ...]) -> None:
+        """Raise if arrays of a shape are no vectors of this model's parameters."""
+        count = len(self.names)
+        if not shape or shape[-1] != count:
+            raise PerturbationError(
+                f"x: got an array of shape {shape}, must be {count} numbers or arrays "
+                f"(..., {count}): {', '.join(self.names)}"
+            )
 
     def _linear(self, x: ArrayLike) -> tuple[Linearisation, tuple[int, ...]]:
         vectors, lead = self._vectors(x)
@@ -217,7 +221,13 @@ class ParametricBlade:
     def jvp(self, x: ArrayLike, dx: ArrayLike) -> Array:
         """Return derivatives (..., k, n, 3) of `sections` along directions dx (..., p)."""
         linear, lead = self._linear(x)
-        made = linear.jvp(self._vectors(np.broadcast_to(dx, np.shape(x)))[0])[1]
+        ways, shape = (
+            numbers(by_name(dx, self.names), "dx", PerturbationError),
+            (*lead, len(self.names)),
+        )
+        if ways.shape not in (shape, shape[-1:]):
+            raise PerturbationError(f"dx: got {shown(ways)}, must be of shape {shape}, as x")
+        made = linear.jvp(np.broadcast_to(ways, shape).reshape(linear.x.shape))[1]
         return made.reshape(*lead, *made.shape[1:])
 
     def vjp(self, x: ArrayLike, g: ArrayLike) -> Array:

@@ -22,7 +22,7 @@ from bladegen.support.arguments import numbers, shown, suggestion
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.values import brief
 
-__all__ = ["AFFINE", "USUAL", "Parameters", "clamped"]
+__all__ = ["AFFINE", "USUAL", "Parameters", "by_name", "clamped"]
 
 AFFINE = tuple(RANGES)
 IDENTITY = AffineChange()
@@ -35,6 +35,34 @@ USUAL = {  # bounds where the space's data give none: what the user's guide call
     "twist_scale": (0.5, 1.5),
     "prebend_scale": (0.0, 2.0),
 }
+
+
+def by_name(x: Any, names: tuple[str, ...]) -> Any:
+    """Return vectors with their numbers in order, where they come with names.
+
+    Names are those of a mapping, of a Series' index or of a table's columns; "t1" is "pga[0]", as
+    families call it.  What has no names is returned as it is.
+    """
+    labels = list(x) if isinstance(x, Mapping) else getattr(x, "columns", getattr(x, "index", None))
+    if labels is None or callable(labels):
+        return x
+    known = {_called(label): label for label in labels if isinstance(label, str)}
+    if not known and not isinstance(x, Mapping):
+        return x
+    missing = [name for name in names if name not in known]
+    if missing or len(known) > len(names):
+        other = [str(label) for called, label in known.items() if called not in names]
+        said = f"no {missing[0]!r}" if missing else f"{other[0]!r}, which is no parameter"
+        raise PerturbationError(
+            f"x: has {said}; names must be {', '.join(names)}, in any order, or there must be none"
+        )
+    return np.stack([np.asarray(x[known[name]]) for name in names], axis=-1)
+
+
+def _called(label: str) -> str:
+    """Return a parameter's name for a coordinate's that families have."""
+    number = label[1:] if label.startswith("t") else ""
+    return f"pga[{int(number) - 1}]" if number.isdecimal() else label
 
 
 def clamped(grid: Array, values: Array) -> Any:

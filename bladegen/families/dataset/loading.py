@@ -274,7 +274,7 @@ def load_family(
         If the folder holds no family that is whole.
     """
     folder = Path(path)
-    folder = folder.parent if folder.name == "sections.zarr" else folder
+    folder = folder.parent if folder.name in ("sections.zarr", "manifest.parquet") else folder
     told, manifest = folder / "family.json", folder / "manifest.parquet"
     if not told.is_file():
         raise FamilyError(f"{path}: holds no family; `bladegen family BLADE -o {path}` makes one")

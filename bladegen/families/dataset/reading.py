@@ -1,5 +1,7 @@
 """Batches of a family's arrays, as training loops read them: shard by shard, shuffled or not."""
 
+import itertools
+import math
 import operator
 from collections.abc import Iterator
 from typing import Any, SupportsIndex
@@ -10,9 +12,9 @@ from bladegen.errors import FamilyError, PlaceError
 from bladegen.support.arguments import generator, shown, whole
 from bladegen.support.arrays import Indices
 
-__all__ = ["arrays_at", "batches", "chosen", "named", "place_of"]
+__all__ = ["arrays_at", "batches", "chosen", "named", "of_numbers", "place_of"]
 
-NEAR = 2  # variants that are read between two that are wanted: one read costs as much as they
+NEAR = 2**20  # bytes that are read between two rows that are wanted: one read costs as much as they
 POOL = 4  # shards whose variants are shuffled together
 
 
@@ -24,7 +26,8 @@ def batches(
     rng: np.random.Generator | int | None,
 ) -> Iterator[dict[str, Any]]:
     """Give batches of a loaded family's arrays (`LoadedFamily.batches`)."""
-    if whole(size, "size", FamilyError) < 1:
+    size = whole(size, "size", FamilyError)
+    if size < 1:
         raise FamilyError(f"size: got {size}, must be at least 1")
     names, wanted = named(family, names), chosen(family, places)
     rng = None if rng is None else generator(rng, "rng", FamilyError)
@@ -35,11 +38,12 @@ def batches(
     if rng is not None:
         groups = [groups[i] for i in rng.permutation(len(groups))]
     held: dict[str, Any] = {}
-    for first in range(0, len(groups), POOL):
-        pool = np.concatenate(groups[first : first + POOL])
+    together = 1 if rng is None else POOL
+    for first in range(0, len(groups), together):
+        pool = np.concatenate(groups[first : first + together])
         pool = pool if rng is None else rng.permutation(pool)
         read = arrays_at(family, names, pool)
-        if held:
+        if held and len(next(iter(held.values()))):
             read = {name: np.concatenate([held[name], values]) for name, values in read.items()}
         count = len(next(iter(read.values())))
         for end in range(size, count + 1, size):
@@ -64,10 +68,17 @@ def _rows(array: Any, places: Indices) -> Any:
         return np.asarray(array[:0])
     if isinstance(array, np.ndarray):
         return array[places]
-    unique, back = np.unique(places, return_inverse=True)
-    runs = np.split(unique, np.flatnonzero(np.diff(unique) > NEAR) + 1)
-    read = [np.asarray(array[run[0] : run[-1] + 1])[run - run[0]] for run in runs]
-    return np.concatenate(read)[back]
+    order = np.argsort(places, kind="stable")
+    ordered = places[order]
+    near = max(1, NEAR // (array.dtype.itemsize * math.prod(array.shape[1:])))
+    ends = [0, *(np.flatnonzero(np.diff(ordered) > near) + 1).tolist(), len(ordered)]
+    if len(ends) == 2 and np.array_equal(places, np.arange(places[0], places[0] + len(places))):
+        return np.asarray(array[places[0] : places[-1] + 1])
+    found = np.empty((len(places), *array.shape[1:]), array.dtype)
+    for start, end in itertools.pairwise(ends):
+        part = ordered[start:end]
+        found[order[start:end]] = np.asarray(array[part[0] : part[-1] + 1])[part - part[0]]
+    return found
 
 
 def chosen(family: Any, places: Any) -> Indices:
@@ -86,6 +97,13 @@ def chosen(family: Any, places: Any) -> Indices:
     if outside.size:
         raise FamilyError(f"places: got {outside[0]}, allowed is 0 to {len(family) - 1}")
     return found.astype(np.int64)
+
+
+def of_numbers(family: Any, names: tuple[str, ...]) -> None:
+    """Raise where one of some arrays holds texts."""
+    for name in names:
+        if _array(family, name).dtype.kind not in "biuf":
+            raise FamilyError(f"names: {name!r} holds texts, must be numbers or True and False")
 
 
 def place_of(key: SupportsIndex, count: int) -> int:

@@ -5,6 +5,7 @@ keeps the parts of the variants that it had.  Shares are therefore met on averag
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -40,7 +41,8 @@ def split_of(index: Indices, seed: int, shares: tuple[float, float, float] = SHA
     >>> split_of(np.arange(8), 7)
     array([0, 0, 2, 1, 0, 0, 0, 0])
     """
-    if len(shares) != len(SPLITS) or min(shares) < 0 or not math.isclose(sum(shares), 1.0):
+    several = isinstance(shares, Sequence | np.ndarray) and len(shares) == len(SPLITS)
+    if not (several and min(shares) >= 0 and math.isclose(sum(shares), 1.0)):
         raise FamilyError(
             f"shares: got {shares}, must be three that sum to 1: train, validation, test"
         )

@@ -16,9 +16,13 @@ from bladegen.parametric.quantities import Quantities
 from bladegen.support.arguments import instance, one_of
 from bladegen.support.arrays import Array
 
-__all__ = ["SECTIONS", "UNITS", "Evaluated", "Outputs", "follows"]
+__all__ = ["FIRST_ONLY", "SECTIONS", "UNITS", "Evaluated", "Outputs", "follows"]
 
 SECTIONS = "sections"
+FIRST_ONLY = (
+    "bladegen knows first derivatives only, and these are second ones; differences of exact "
+    "gradients, or a method that needs none (L-BFGS, SLSQP), do instead"
+)
 UNITS = {  # as OpenMDAO spells them; the others have none
     "sections": "m",
     "volume": "m**3",

@@ -5,6 +5,7 @@ names of its places.  In OCCT's terms this is an XCAF document.  Millimetres.  O
 """
 
 import io
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,11 @@ from bladegen.version import __version__
 __all__ = ["NOBODY", "STEP_SCHEMAS", "Author", "Part", "Place", "write", "write_parts"]
 
 STEP_SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS"}  # and what OCCT calls them
+
+
+_STYLED = b"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
+_STYLES = re.compile(rb"^#\d+ *= *" + _STYLED, re.MULTILINE)
+_NUMBER = re.compile(rb"#(\d+)")
 
 
 @dataclass(frozen=True)
@@ -120,7 +126,7 @@ def write(
         status = plain.WriteStream(content)
     if status.name != "IFSelect_RetDone":
         raise CadError(f"{path}: OCCT could not write the STEP file ({status.name})")
-    save(path, content)
+    save(path, io.BytesIO(_styles_in_order(content.getvalue())))
 
 
 def write_parts(name: str, parts: Sequence[Part], path: Path, **options: Any) -> None:
@@ -209,6 +215,47 @@ def _number_places(model: Any) -> None:
     places = [e for e in entities if isinstance(e, StepRepr_NextAssemblyUsageOccurrence)]
     for number, place in enumerate(places, start=1):
         place.SetId(TCollection_HAsciiString(str(number)))
+
+
+def _styles_in_order(content: bytes) -> bytes:
+    """Return a STEP file whose colours stand last in the order of its parts, as from any process.
+
+    OCCT writes those of an assembly part by part, in the order of addresses in memory, and each
+    shade where it is first used.
+    """
+    heads = [found.start() for found in _STYLES.finditer(content)]
+    if len(heads) < 2:
+        return content
+    start, end = heads[0], content.rindex(b"ENDSEC;")
+    lines = b" ".join(content[start:end].split()).split(b"; #")
+    told = {
+        int(number): body for number, body in (line.lstrip(b"#").split(b" = ", 1) for line in lines)
+    }
+    first, order = min(told), list[int]()
+    waiting = sorted(
+        (number for number, body in told.items() if body.startswith(_STYLED)),
+        key=lambda number: -_named(told[number])[-1],  # the context of a part
+    )
+    known = set[int]()
+    while waiting:
+        number = waiting.pop()
+        if number not in known:
+            known.add(number)
+            order.append(number)
+            waiting += [one for one in reversed(_named(told[number])) if one >= first]
+    anew = {number: first + i for i, number in enumerate(order)}
+
+    def again(found: re.Match[bytes]) -> bytes:
+        return b"#%d" % anew.get(int(found[1]), int(found[1]))
+
+    entities = [b"#%d = %s;" % (anew[n], _NUMBER.sub(again, told[n].rstrip(b"; "))) for n in order]
+    broken = [re.sub(rb"(.{60}[^,]*,)(?=.)", rb"\1\n    ", entity) for entity in entities]
+    return content[:start] + b"\n".join(broken) + b"\n" + content[end:]
+
+
+def _named(body: bytes) -> list[int]:
+    """Return the entities that one names, in its order."""
+    return [int(number) for number in _NUMBER.findall(body)]
 
 
 def _fill_header(model: Any, name: str, when: str, author: Author) -> None:

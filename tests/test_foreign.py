@@ -238,3 +238,11 @@ def test_no_file_beside_a_mesh_is_opened(tmp_path, monkeypatch):
     path.write_text(f"mtllib {tmp_path}/secret\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     os.mkfifo(tmp_path / "secret")  # who opens it waits for ever
     assert len(mesh_files.read(path).faces) == 1
+
+
+def test_triangles_of_a_plane_are_refused(tmp_path, forked):
+    """A wavefront file whose vertices have lost a coordinate, as an editor may leave it."""
+    path = tmp_path / "flat.obj"
+    path.write_text("v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n")
+    with pytest.raises(FileError, match="points of 2 coordinates, 3 are needed"):
+        comparison.surface_of(path)

@@ -162,11 +162,12 @@ class _Locator:
     """Finds the nearest of a surface's triangles, or of some of them."""
 
     def __init__(self, surface: Surface, some: Array | None = None) -> None:
-        from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+        from vtkmodules.vtkCommonDataModel import vtkCellLocator
 
         self.which = np.arange(len(surface.mesh.faces)) if some is None else np.flatnonzero(some)
         self.data = _poly_data(surface.mesh, self.which)
-        self.locator: Any = vtkStaticCellLocator()
+        # the static one is as quick, and takes a gigabyte where triangles are long and many
+        self.locator: Any = vtkCellLocator()
         self.locator.SetDataSet(self.data)
         self.locator.BuildLocator()
 

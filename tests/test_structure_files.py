@@ -98,7 +98,11 @@ def test_one_version_says_the_same_as_the_other(plain):
     structure, _ = read(1, WAYS[1])
     structure = replace(structure, webs=tuple(_straight(web) for web in structure.webs))
     two, _, said = there_and_back(replace(plain, structure=structure), 2)
-    assert said == [TAIL]
+    assert said == [
+        "structure: arcs: stands on no plane; WISDEM 4 takes webs on planes alone, and stops at "
+        "this one",
+        TAIL,
+    ]
     one, _, said = there_and_back(replace(plain, structure=two), 1)
     assert said == []
     first, second, third = (laid(plain, known) for known in (structure, two, one))
@@ -156,6 +160,16 @@ def test_a_variant_s_file_holds_the_rules_and_their_places_on_it(plain, tmp_path
     assert_allclose(back.mass, own.mass, rtol=1e-4)
     cap = again.structure.layers[1].stated[0]
     assert_allclose(cap(0.5), own.at(0.5).arcs[1, 0], atol=5e-3)
+
+
+def test_a_web_on_no_plane_is_said_for_wisdem(plain):
+    web = bg.Web("web", Arc(constant(0.3)), Arc(constant(0.7)))
+    foam = bg.Material("foam", 100.0)
+    wall = bg.Layer(
+        "wall", "foam", constant(0.1), Arc(constant(0.0)), Arc(constant(1.0)), web="web"
+    )
+    _, _, said = there_and_back(replace(plain, structure=bg.Structure((foam,), (web,), (wall,))), 2)
+    assert any("web: stands on no plane; WISDEM 4" in one for one in said)
 
 
 def test_what_a_material_costs_goes_along(plain):
@@ -274,10 +288,32 @@ def test_windio_1_says_how_the_rotor_turns_in_other_words():
     assert Rotor(facts=turned).design_ratio is None
 
 
+def test_what_wisdem_asks_of_a_rotor_is_taken_from_windio_1_in_windio_2s_units():
+    """Units as of windIO's own converter: rad to deg, rad/s to 1/min."""
+    control = {
+        "supervisory": {"Vin": 4.0, "Vout": 25.0},
+        "pitch": {"max_pitch": 1.57, "max_pitch_rate": 0.0349, "min_pitch": 0.0},
+        "torque": {"max_torque_rate": 4500000.0, "VS_minspd": 0.0, "VS_maxspd": 2.0},
+    }
+    nacelle = {"drivetrain": {"overhang": 7.0, "distance_tt_hub": 3.0}}
+    document = {"control": control, "components": {"nacelle": nacelle}}
+    found = dict(turbine_facts.read_older(Node(document, "", Notes())))
+    assert found["assembly.cut_in_wind_speed"] == 4.0
+    assert found["control.min_rotor_speed"] == 0.0
+    assert_allclose(found["control.max_rotor_speed"], 19.0986, rtol=1e-5)
+    assert_allclose(found["control.max_pitch_limit"], 89.954, rtol=1e-5)
+    assert_allclose(found["control.max_pitch_rate"], 2.0, rtol=1e-3)
+    assert found["control.min_pitch_limit"] == 0.0
+    assert found["components.drivetrain.outer_shape.overhang"] == 7.0
+    names = [f"{path}.{name}" for path, names in turbine_facts.KEPT.items() for name in names]
+    assert [*found] == [name for name in names if name in found]
+
+
 @pytest.mark.parametrize("junk", [None, "fast", -1.0, 0, True, float("inf"), float("nan"), [9.0]])
 def test_what_is_no_speed_in_windio_1_is_passed_over(junk):
     control = {"supervisory": {"maxTS": junk}, "torque": {"tsr": junk, "VS_maxspd": junk}}
-    assert turbine_facts.read_older(Node({"control": control}, "", Notes())) == ()
+    found = dict(turbine_facts.read_older(Node({"control": control}, "", Notes())))
+    assert not {"control.rated_rotor_speed", "control.optimal_tsr"} & found.keys()
     assert turbine_facts.read_older(Node({"control": junk}, "", Notes())) == ()
 
 
@@ -299,5 +335,14 @@ def test_an_airfoil_of_unknown_thickness_is_measured_for_windio_2(tmp_path):
 def test_what_bonds_layers_is_kept_of_the_materials(plain):
     structure = plain.structure
     assert {"resin", "adhesive"} <= structure.by_name.keys()
+    ends = {"start_nd_arc": {"grid": [0, 1], "values": [0, 0]}}
+    ends["end_nd_arc"] = {"grid": [0, 1], "values": [1, 1]}
+    foam, glue = (
+        {"name": "foam", "rho": 100.0},
+        {"name": "Adhesive", "rho": 1100.0},
+    )  # as BAR has it
+    skin = {"name": "skin", "material": "foam", "thickness": {"grid": [0, 1], "values": [0.01] * 2}}
+    named, _ = read(1, {"layers": [skin | ends]}, [foam, glue])
+    assert named.by_name.keys() == {"foam", "Adhesive"}
     layup = bg.Blade.from_definition(plain, landmarks=201).layup
     assert set(layup.material_masses) == {layer.material for layer in structure.layers}

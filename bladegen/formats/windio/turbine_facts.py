@@ -45,6 +45,25 @@ KEPT = {
 }
 
 
+RPM, DEGREES = 30.0 / pi, 180.0 / pi
+OLDER = {  # where windIO 1 has the same, and its unit in that of windIO 2
+    "assembly.cut_in_wind_speed": ("control.supervisory.Vin", 1.0),
+    "assembly.cut_out_wind_speed": ("control.supervisory.Vout", 1.0),
+    "components.drivetrain.outer_shape.distance_tt_hub": (
+        "components.nacelle.drivetrain.distance_tt_hub",
+        1.0,
+    ),
+    "components.drivetrain.outer_shape.overhang": ("components.nacelle.drivetrain.overhang", 1.0),
+    "components.drivetrain.gearbox.gear_ratio": ("components.nacelle.drivetrain.gear_ratio", 1.0),
+    "control.min_rotor_speed": ("control.torque.VS_minspd", RPM),
+    "control.max_rotor_speed": ("control.torque.VS_maxspd", RPM),
+    "control.min_pitch_limit": ("control.pitch.min_pitch", DEGREES),
+    "control.max_pitch_limit": ("control.pitch.max_pitch", DEGREES),
+    "control.max_pitch_rate": ("control.pitch.max_pitch_rate", DEGREES),
+    "control.max_torque_rate": ("control.torque.max_torque_rate", 1.0),
+}
+
+
 def read(root: Node, places: Iterable[str] = tuple(KEPT)) -> Facts:
     """Return the facts at some places of a document, if they are numbers or short texts."""
     found: list[tuple[str, str | float]] = []
@@ -60,7 +79,7 @@ def read(root: Node, places: Iterable[str] = tuple(KEPT)) -> Facts:
 
 
 def read_older(root: Node) -> Facts:
-    """Return the facts of a windIO 1 document: its assembly, design tip speed ratio, rotor speed.
+    """Return the facts of a windIO 1 document: its assembly, and how its rotor is controlled.
 
     The rated speed is the lower of the largest rotor speed and the one at which the tip is as fast
     as it may be: the windIO 2 file of IEA 22 MW has what its windIO 1 file makes by that.
@@ -73,26 +92,31 @@ def read_older(root: Node) -> Facts:
             ("tip", "supervisory.maxTS"),  # m/s
         )
     }
-    found = list(read(root, ("assembly",)))
+    found = dict(read(root, ("assembly",)))
+    for name, (place, factor) in OLDER.items():
+        value = _number(root, place, -inf)
+        if value is not None:
+            found.setdefault(name, value * factor)
     diameter, tip = _number(root, "assembly.rotor_diameter"), control["tip"]
     bounds = [] if control["turning"] is None else [control["turning"]]
     if tip is not None and diameter is not None:
         bounds.append(2.0 * tip / diameter)
     if bounds:
-        found.append(("control.rated_rotor_speed", min(bounds) * 30.0 / pi))
+        found["control.rated_rotor_speed"] = min(bounds) * RPM
     if control["tsr"] is not None:
-        found.append(("control.optimal_tsr", control["tsr"]))
-    return tuple(found)
+        found["control.optimal_tsr"] = control["tsr"]
+    order = [f"{path}.{name}" for path, names in KEPT.items() for name in names]
+    return tuple((name, found[name]) for name in order if name in found)
 
 
-def _number(root: Node, path: str) -> float | None:
-    """Return what stands at a path, if it is a positive number."""
+def _number(root: Node, path: str, above: float = 0.0) -> float | None:
+    """Return what stands at a path, if it is a number, above nought if nothing else is said."""
     held = root.value
     for key in path.split("."):
         held = held.get(key) if isinstance(held, dict) else None
     if isinstance(held, bool) or not isinstance(held, int | float):
         return None
-    return float(held) if 0.0 < held < inf else None
+    return float(held) if above < held < inf else None
 
 
 def _plain(value: str | float) -> bool:

@@ -225,7 +225,7 @@ def _once(inside: Node, kind: str, read: Callable[[Node], T | None]) -> dict[str
 
 def _materials(root: Node, wanted: Iterable[str]) -> dict[str, Material]:
     """Return the materials that layers name, and those that bond them, in the order of the file."""
-    names = {*wanted, *BONDS}
+    names = {*wanted, *BONDS, *map(str.capitalize, BONDS)}
     found: dict[str, Material] = {}
     for i, value in enumerate(_listed(root)):
         node = Node(value, f"materials[{i}]", root.notes)

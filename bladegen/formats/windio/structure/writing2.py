@@ -120,6 +120,9 @@ class _Anchors:
         for key, place in new if not self._pair(anchor, one) else ():
             if not self._single(anchor, key, place):
                 self.written.formless(one.name, key, "2")
+        if isinstance(one, Web) and "plane_intersection" not in anchor:
+            said = "stands on no plane; WISDEM 4 takes webs on planes alone, and stops at this one"
+            self.written.note(f"structure: {one.name}", said)
         self.made.append(anchor)
         self.known |= {place: (name, key) for key, place in new}
 

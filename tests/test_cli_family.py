@@ -1,7 +1,10 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import bladegen as bg
 from bladegen.cli import commands
 from bladegen.errors import BladegenError, RenderError
 from bladegen.families.folder import FamilyFolder, read_manifest
@@ -122,3 +125,34 @@ def test_many_variants_are_thinned_in_the_overlay(monkeypatch, tmp_path):
     monkeypatch.setattr(contact_sheet, "MOST", 2)
     result = run("-o", tmp_path / "f", *FEW)
     assert "2 of 5 sound variants overlaid" in result.output
+
+
+def test_variants_are_blades_of_commands(tmp_path):
+    """A family's variant could be looked at in Python alone."""
+    import trimesh
+
+    def command(*words):
+        return CliRunner().invoke(commands.app, [*map(str, words)])
+
+    folder = tmp_path / "fam"
+    made = command("family", "nrel5mw", "-o", folder, "--count", 2, "--spans", 12, "--reach", 0.2)
+    assert made.exit_code == 0, made.output
+    wanted = bg.load_family(folder)[1].volume
+    for name in ("1", "nrel5mw-00001"):
+        shown = command("build", folder / name, "-o", tmp_path / name, "--format", "stl")
+        assert shown.exit_code == 0, shown.output
+        mesh = trimesh.load(tmp_path / name / "nrel5mw-00001.stl")
+        assert mesh.volume == pytest.approx(wanted, rel=1e-3)
+    one = ("build", folder / "1", "-o", tmp_path)
+    for words, said in (
+        (("preview", folder), "is a family's folder; name one of its variants: "),
+        (("preview", folder / "7"), "variant: got 7, allowed is 0 to 1"),
+        (("preview", folder / "nrel5mw-00002"), "has no variant 'nrel5mw-00002', but 0 to 1 and"),
+        ((*one, "--landmarks", "201"), "with 401 landmarks; leave options out"),
+        ((*one, "--path", "geodesic"), "a variant is made as its family was"),
+        (("family", "nrel5mw", "-o", "s3://bucket/family"), "must be a folder of this machine"),
+    ):
+        result = command(*words)
+        assert isinstance(result.exception, BladegenError)
+        assert said in str(result.exception)
+    assert not Path("s3:").exists()

@@ -114,6 +114,27 @@ def test_variants_are_drawn_until_they_fulfil_conditions():
     assert never.table()["valid"].to_pylist() == [False] * 12
 
 
+def volumes_of(block):
+    each = block.batch.sections.astype(np.float64)
+    return np.array([polygons.volume_and_area(one)[0] for one in each])
+
+
+@pytest.mark.parametrize("place", [0, 3, 7])
+def test_conditions_hold_of_what_is_stored_in_either_precision(place):
+    """A variant within rounding of its bound passed the one test and failed the other, for good."""
+    asked = {"count": 12, "seed": 7, "spans": 30, "reach": 0.4}
+    free = bg.family(blade(), SPACE, **asked)
+    index = np.arange(12)
+    kinds = np.float32, np.float64
+    near = [volumes_of(free.block(index, dtype=kind))[place] for kind in kinds]
+    family = bg.family(blade(), SPACE, **asked, where=f"volume > {float(np.mean(near))!r}")
+    for kind in kinds:
+        block = family.block(index, dtype=kind)
+        assert block.valid.all()
+        assert np.all(volumes_of(block) > np.mean(near))
+        assert_array_equal(block.values, family.block(index).values)
+
+
 def test_thin_and_outlying_variants_say_so():
     table = tabulated(SPACE, {"t1": [0.0, 9.0, 0.0], "thickness": [1.0, 1.0, 0.25]})
     block = bg.family(blade(), SPACE, design=table, spans=40).block(np.arange(3))

@@ -203,6 +203,20 @@ def test_adding_labels_goes_on_wherever_it_was_killed(plain, tmp_path, monkeypat
 
 
 @pytest.mark.nightly
+def test_a_cluster_adds_the_same_labels(plain, folder, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    target = tmp_path / "family"
+    shutil.copytree(plain, target)
+    here = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with (
+        distributed.LocalCluster(processes=True, **here) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        assert add_labels(bg.load_family(target), LABELS, client=client) == COUNT
+    same_labelled(folder, target)
+
+
+@pytest.mark.nightly
 def test_threads_add_the_same_labels(plain, tmp_path, monkeypatch):
     from bladegen.families import order
 

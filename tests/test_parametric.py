@@ -1,4 +1,5 @@
 import json
+import warnings
 from functools import cache
 
 import numpy as np
@@ -423,6 +424,20 @@ def test_numbers_with_names_are_taken_by_name():
     ):
         with pytest.raises(PerturbationError, match=said):
             model.quantities(given_)
+
+
+def test_compiling_is_said_once(monkeypatch):
+    """The first Jacobian on a machine took 40 s without a word."""
+    from bladegen.support import compiled
+
+    monkeypatch.setattr(compiled, "is_kept", lambda function: False)
+    compiled.announced.cache_clear()
+    model = bg.ParametricBlade(blade_of("iea15mw"), space(), ("pga",), eta=[0.6])
+    with pytest.warns(UserWarning, match="compiles its loops, once on this machine"):
+        model.jacobian(model.baseline)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        model.jacobian(model.baseline + 0.01)
 
 
 @given(st.floats(0.21, 4.9))

@@ -24,7 +24,7 @@ from bladegen.cli.terminal import print_table, remark, variants_bar
 from bladegen.errors import FamilyError
 from bladegen.support.stopping import Stopped
 
-__all__ = ["SHOWN", "family", "figure_range"]
+__all__ = ["SHOWN", "cluster", "family", "figure_range"]
 
 SHOWN = {  # labels that the summary has
     "rotor_power_coefficient": "largest power coefficient",
@@ -177,7 +177,7 @@ def family(
     if not is_kept(kernels.made):
         remark("compiling loops, once on this machine: about ten seconds")
     try:
-        with _cluster(dask) as client, variants_bar(len(planned)) as progress:
+        with cluster(dask) as client, variants_bar(len(planned)) as progress:
             made = run(
                 order,
                 jobs=jobs,
@@ -201,7 +201,7 @@ def figure_range(values: Any) -> str:
 
 
 @contextmanager
-def _cluster(address: str | None) -> Iterator[Any]:
+def cluster(address: str | None) -> Iterator[Any]:
     """Connect to a Dask scheduler; None without an address."""
     if address is None:
         yield None

@@ -61,7 +61,7 @@ class Kind(StrEnum):
 def preview(
     blade: Annotated[
         str | None,
-        typer.Argument(metavar="[BLADE]", help="A bundled blade's name, or a definition's file."),
+        typer.Argument(metavar="[BLADE]", help="A blade's name, its file, or FOLDER/VARIANT."),
     ] = None,
     compare: Annotated[
         tuple[str, str] | None,

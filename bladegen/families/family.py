@@ -138,7 +138,8 @@ class Family:
         """
         made: dict[str, Any] = {"dtype": dtype, "measured": measured}
         values = self.design.at(index)
-        if np.count_nonzero(self._rules.left(values)) > len(index) // 2 and self._redraws:
+        many = np.count_nonzero(self._rules.left(values)) > len(index) // 2
+        if (many or self._rules.measuring) and self._redraws:
             refused = self._rules.tested(values)  # sections of so many would be made in vain
             values, attempts, reasons = self._redrawn(index, values, refused)
             batch = self._sections.evaluate(*self._rules.split(values), **made)

@@ -10,6 +10,7 @@ import os
 import signal
 from collections.abc import Callable, Generator
 from itertools import islice
+from pathlib import Path
 from typing import Any, TypeVar
 
 from bladegen.errors import ExportError, FamilyError
@@ -19,6 +20,7 @@ from bladegen.support.threads import one_thread
 
 __all__ = ["in_processes", "in_threads", "on_cluster"]
 
+S = TypeVar("S")
 T = TypeVar("T")
 logger = logging.getLogger(__name__)
 
@@ -96,16 +98,32 @@ def in_processes(order: Order, left: list[int], jobs: int) -> Generator[Made]:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def on_cluster(order: Order, left: list[int], client: Any) -> Generator[Made]:
-    """Make blocks on a Dask cluster; it hands a dead worker's blocks to the others."""
+def on_cluster(
+    make: Callable[[S, int], T], shared: S, left: list[int], client: Any, target: Path
+) -> Generator[T]:
+    """Make blocks on a Dask cluster; it hands a dead worker's blocks to the others.
+
+    Parameters
+    ----------
+    make : callable
+        Makes a block of what all workers share, by its number.
+    shared : object
+        What is sent to each worker once.
+    left : list of int
+        Blocks that are to be made.
+    client : dask.distributed.Client
+        The cluster.
+    target : Path
+        The folder that is written into, for messages.
+    """
     from distributed import as_completed
 
-    shared = client.scatter(order, broadcast=True)
+    there = client.scatter(shared, broadcast=True)
     coming, tasks = iter(left), as_completed()
 
     def submit(count: int) -> None:
         for number in islice(coming, count):
-            tasks.add(client.submit(make_block, shared, number, pure=False, retries=3))
+            tasks.add(client.submit(make, there, number, pure=False, retries=3))
 
     submit(AHEAD * max(1, len(client.nthreads())))
     try:
@@ -116,7 +134,8 @@ def on_cluster(order: Order, left: list[int], client: Any) -> Generator[Made]:
         raise
     except Exception as error:  # a cluster's own failures are of many kinds
         raise FamilyError(
-            f"{order.target}: the cluster failed: {type(error).__name__}: {error}; --resume goes on"
+            f"{target}: the cluster failed: {type(error).__name__}: {error}; the same command goes "
+            "on, that of a family with --resume"
         ) from None
     finally:
         client.cancel(list(tasks.futures))

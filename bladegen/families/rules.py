@@ -20,6 +20,7 @@ from bladegen.support.arrays import Array, Indices, Mask
 __all__ = ["Rules"]
 
 AHEAD = 16  # draws of a variant looked at together, for the first that keeps to the data
+STORED = (np.float64, np.float32)  # sections: conditions hold in both, whichever are written
 MEASURED = ("volume", "surface")  # of sections, that conditions may name
 
 
@@ -75,11 +76,14 @@ class Rules:
             tested = self.sections.tested(*self.split(values[near]))
             for row, reason in zip(near, self.reasons(values[near], *tested), strict=True):
                 reasons[row] = reason
-        sound = np.flatnonzero([not reason for reason in reasons])
-        if self.where and sound.size:
+        for kind in STORED if self.where else ():
+            sound = np.flatnonzero([not reason for reason in reasons])
+            if not sound.size:
+                break
             made = None
             if self.measuring:
-                made = self.sections.evaluate(*self.split(values[sound]), tested=False).sections
+                how: dict[str, Any] = {"tested": False, "dtype": kind}
+                made = self.sections.evaluate(*self.split(values[sound]), **how).sections
             for row, reason in zip(sound, self.unwanted(values[sound], made), strict=True):
                 reasons[row] = reason
         return reasons

@@ -96,7 +96,8 @@ def run(
                 folder(place.blades)
             sections_of(order, np.arange(0))  # compiles, for all workers
             if client is not None:
-                made, several = on_cluster(order, left, client), len(client.nthreads())
+                made = on_cluster(make_block, order, left, client, order.target)
+                several = len(client.nthreads())
             elif jobs > 1 and len(left) > 1:
                 several = min(jobs, len(left))
                 make = partial(make_block, order)

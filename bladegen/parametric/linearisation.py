@@ -46,7 +46,9 @@ class Linearisation:
     def coefficients(self) -> tuple[Array, Array]:
         """Coefficients (k, b, F, 2) of sections in chords, and derivatives (k, b, r + 1, F, 2)."""
         from bladegen.parametric import coefficient_kernels as kernels
+        from bladegen.support.compiled import announced
 
+        announced(kernels.linearised)
         outline, t = self.outline, self.chain.t
         batch, parts = outline.batch, outline.batch.parts
         raw, target = outline.coefficients(t), np.ascontiguousarray(self.chain.target.T)

@@ -13,14 +13,16 @@ Where Numba is not installed (locks/core.txt) the same functions run as they are
 some hundred times as slowly.
 """
 
+import warnings
 from collections.abc import Callable
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-__all__ = ["NUMBA", "ONE", "ZERO", "compiled", "is_kept"]
+__all__ = ["NUMBA", "ONE", "ZERO", "announced", "compiled", "is_kept"]
 
 # to pass on: for a plain 1 a function is compiled once more
 ZERO: Any = np.int64(0)
@@ -48,3 +50,13 @@ def is_kept(function: Any) -> bool:
     place = getattr(function.stats, "cache_path", None)
     name = f"{function.py_func.__module__.rpartition('.')[2]}.{function.py_func.__qualname__}-"
     return place is not None and any(Path(place).glob(f"{name}*.nbi"))
+
+
+@cache
+def announced(function: Any) -> None:
+    """Warn once that a function and what it calls are going to be compiled, if they are."""
+    if not is_kept(function):
+        warnings.warn(
+            "bladegen compiles its loops, once on this machine: up to 40 s on a busy one",
+            stacklevel=4,
+        )

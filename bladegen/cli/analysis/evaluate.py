@@ -97,7 +97,7 @@ def evaluate(
     }
     with progress_bar() as progress:
         progress("building")
-        baseline = making.blade(blade, LANDMARKS)
+        baseline = making.blade(blade, LANDMARKS, asked=False)
         blades = [baseline, changes.applied(baseline)] if changes.asked else [baseline]
         progress("evaluating")
         found = evaluated(

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from bladegen.cli.family import SHOWN, figure_range
+from bladegen.cli.family import SHOWN, cluster, figure_range
 from bladegen.cli.options.common import MAKING, Making, Mirror
 from bladegen.cli.options.groups import grouped
 from bladegen.cli.terminal import print_table, variants_bar
@@ -40,6 +40,9 @@ def label(
     making: Making = MAKING,
     mirror: Mirror = False,
     jobs: Annotated[int, typer.Option(help="Threads at work.")] = 1,
+    dask: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead of --jobs.")
+    ] = None,
 ) -> None:
     """Add labels to a family: polars, what rotors do, mass of each sound variant.
 
@@ -59,8 +62,8 @@ def label(
     modes = None if space is None else ShapeSpace.load(space)
     loaded = load_family(family, blade=baseline, space=modes)
     try:
-        with variants_bar(len(loaded)) as progress:
-            computed = add_labels(loaded, words, jobs=jobs, progress=progress)
+        with cluster(dask) as client, variants_bar(len(loaded)) as progress:
+            computed = add_labels(loaded, words, jobs=jobs, client=client, progress=progress)
     except Stopped as stop:
         raise stop.saying(f"{family}: the same command goes on; ") from None
     loaded = load_family(family)

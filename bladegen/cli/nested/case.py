@@ -193,7 +193,7 @@ def _of_rotor(
 
     hub, pitch = rotor.hub_radius, rotor.pitch
     return rotor_case(
-        making.blade(blade, LANDMARKS),
+        making.blade(blade, LANDMARKS, asked=False),
         hub_radius=None if hub is None else metres(hub, "hub-radius", example="2m"),
         wind=rotor.wind,
         ratio=rotor.tip_speed_ratio,

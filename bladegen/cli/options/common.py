@@ -46,7 +46,11 @@ class Planes(StrEnum):
 
 
 BladeName = Annotated[
-    str, typer.Argument(metavar="BLADE", help="A bundled blade's name, or a definition's file.")
+    str,
+    typer.Argument(
+        metavar="BLADE",
+        help="A bundled blade's name, a definition's file, or a family's variant, FOLDER/NUMBER.",
+    ),
 ]
 Airfoils = Annotated[
     Path | None,
@@ -135,13 +139,18 @@ class Making:
         ),
     ] = "off"
 
-    def blade(self, source: str, landmarks: int = LANDMARKS) -> Any:
-        """Read and build a blade."""
+    def blade(self, source: str, landmarks: int = LANDMARKS, *, asked: bool = True) -> Any:
+        """Read and build a blade, or take a family's variant, whose landmarks are `asked` for."""
         from bladegen.blade.blade import Blade
         from bladegen.blade.planform import PLANES
         from bladegen.cli.options.fairing import chord_share, planform_fairing
         from bladegen.cli.options.parsing import finish
+        from bladegen.cli.options.variants import variant
         from bladegen.formats.reading import read
+
+        found = variant(source, landmarks if asked else None, plain=self == Making())
+        if found is not None:
+            return found
 
         made = Blade.from_definition(
             read(source, airfoils=self.airfoils),

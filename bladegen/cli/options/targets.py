@@ -1,5 +1,6 @@
 """Where commands write: folders and files, refused if their names say another kind of file."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -7,6 +8,8 @@ from typing import Annotated
 import typer
 
 __all__ = ["Target", "each_ending_in", "ending_in"]
+
+STORE = re.compile(r"[a-z][a-z0-9+.-]+:/", re.IGNORECASE)  # s3://bucket, as a Path shows it
 
 
 def ending_in(*suffixes: str) -> Callable[[typer.CallbackParam, Path | None], Path | None]:
@@ -35,10 +38,15 @@ def each_ending_in(*suffixes: str) -> Callable[..., list[Path] | None]:
 
 
 def _folder(param: typer.CallbackParam, value: Path) -> Path:
-    """Refuse a file's name where a folder is meant."""
+    """Refuse a file's name, or an object store, where a folder is meant."""
     from bladegen.errors import ExportError
     from bladegen.exports.registry import FORMATS
 
+    if STORE.match(str(value)):
+        raise ExportError(
+            f"{param.opts[-1]}: got {value}, must be a folder of this machine; copy it from there "
+            "(aws s3 sync, gsutil rsync); xarray.open_zarr opens a family where it lies"
+        )
     suffix = next((one for one in FORMATS if value.name.lower().endswith(one)), "")
     if suffix and not value.is_dir():
         raise ExportError(

@@ -11,7 +11,7 @@ import json
 import shutil
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ from bladegen.families.folder import FamilyFolder
 from bladegen.families.identity import require_current
 from bladegen.families.labels.figures import FIGURES, LABELS
 from bladegen.families.labels.labelling import Labelling, checked
-from bladegen.families.processes import in_threads
+from bladegen.families.processes import in_threads, on_cluster
 from bladegen.support.arguments import whole
 from bladegen.support.files import replacing
 from bladegen.support.threads import one_thread
@@ -42,6 +42,7 @@ def add_labels(
     labels: Sequence[str],
     *,
     jobs: int = 1,
+    client: Any = None,
     progress: Callable[[int], None] = lambda _: None,
 ) -> int:
     """Add labels to a family that was written; return of how many variants some were computed now.
@@ -57,6 +58,8 @@ def add_labels(
         Of "polars", "rotor" and "mass".
     jobs : int
         Threads.
+    client : dask.distributed.Client, optional
+        A cluster instead, whose workers see the folder under the same name.
     progress : callable
         Told how many variants are whole, each time some are.
 
@@ -84,7 +87,7 @@ def add_labels(
         if not added:
             return 0
         addition = Addition(family, place, Labelling(family.planned, added))
-        return addition.made(jobs, progress)
+        return addition.made(jobs, progress, client)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,18 +113,22 @@ class Addition:
         """What the manifest says of soundness and draws."""
         return {name: self.family[name][:] for name in ("reason", "attempts")}
 
-    def made(self, jobs: int, progress: Callable[[int], None]) -> int:
+    def made(self, jobs: int, progress: Callable[[int], None], client: Any = None) -> int:
         """Compute what is not whole, and finish; return of how many variants."""
         count, size = len(self.family), self.place.block
         self.place.make_beside(count, self.labelling.arrays())
         left = [i for i in range(-(-count // size)) if not self._part(i).exists()]
         before = done = count - sum(min(size, count - i * size) for i in left)
         progress(done)
-        if left and jobs > 1:
+        made: Generator[int]
+        if left and client is not None:
+            plain = replace(self, family=replace(self.family), labelling=replace(self.labelling))
+            made = on_cluster(Addition.block, plain, left, client, self.place.path)
+        elif left and jobs > 1:
             _ = self.rows, self.labelling.settings  # threads share them
-            made: Generator[int] = in_threads(self._make, left, min(jobs, len(left)))
+            made = in_threads(self.block, left, min(jobs, len(left)))
         else:
-            made = (self._make(number) for number in left)
+            made = (self.block(number) for number in left)
         with closing(made):
             for variants in made:
                 done += variants
@@ -132,7 +139,7 @@ class Addition:
     def _part(self, number: int) -> Path:
         return self.place.labels / self.place.part(number).name
 
-    def _make(self, number: int) -> int:
+    def block(self, number: int) -> int:
         """Compute one block, whole; return how many variants it has."""
         size = self.place.block
         index = np.arange(number * size, min((number + 1) * size, len(self.family)))

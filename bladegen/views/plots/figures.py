@@ -35,6 +35,7 @@ __all__ = [
 SUFFIXES = (".png", ".svg", ".pdf")
 RADIANS = re.compile(r"\S+ rad \((.*?)\)")  # which stand beside degrees
 LONGEST = 100  # letters of what was changed in a title
+MANY = 500  # shapes whose points would hide each other if they were large
 DPI = 150  # pixels an inch
 
 
@@ -167,7 +168,10 @@ def draw_space(space: ShapeSpace, path: Path) -> None:
     data = axes[1, 1]
     shown = space.coordinates[:: max(1, len(space.coordinates) // 4000)]
     second = 1 if r > 1 else 0
-    data.scatter(shown[:, 0], shown[:, second], s=2, color=CATEGORIES[0], alpha=0.4, linewidths=0)
+    size, opacity = (2.0, 0.4) if len(shown) > MANY else (14.0, 0.8)
+    data.scatter(
+        shown[:, 0], shown[:, second], s=size, color=CATEGORIES[0], alpha=opacity, linewidths=0
+    )
     data.set(xlabel="t1, rad", ylabel=f"t{second + 1}, rad", title="shapes learned from")
     for axis in axes.flat:
         if not axis.has_data():

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
@@ -197,6 +199,33 @@ def test_maps_add_up_and_come_back_from_a_table(blade, eroded, tmp_path):
     assert_allclose(again.eta, both.eta, atol=1e-6)
 
 
+@given(st.floats(-4.0, 4.0), st.floats(-4.0, 4.0))
+def test_maps_are_scaled_by_numbers(eroded, one, other):
+    """A vector space: what is measured on a blade is put on others by halves, or twice."""
+    made = one * eroded
+    assert_allclose(made.values, one * eroded.values, atol=0.0)
+    assert np.array_equal(made.eta, eroded.eta)
+    assert_allclose((made * other).values, ((one * other) * eroded).values, atol=1e-12)
+    assert_allclose((made + other * eroded).values, ((one + other) * eroded).values, atol=1e-12)
+    assert_allclose((np.float64(one) * eroded).values, made.values, atol=0.0)
+
+
+def test_a_scaled_map_moves_the_skin_by_as_much(blade, eroded):
+    eta = np.linspace(0.75, 0.95, 5)
+    own = blade.sections(eta)
+    full, half = (blade.perturbed(deviation=f * eroded).sections(eta) - own for f in (1.0, 0.5))
+    assert np.abs(full).max() > 2e-3
+    assert_allclose(half, 0.5 * full, atol=6e-4)  # each is put on within 0.3 mm
+
+
+@pytest.mark.parametrize("factor", [np.ones(3), float("nan"), "2", True])
+def test_maps_are_scaled_by_nothing_else(eroded, factor):
+    with pytest.raises(BladegenError, match="deviation"):
+        eroded * factor
+    with pytest.raises(BladegenError, match="maps add up with"):
+        eroded * eroded
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -221,13 +250,14 @@ def test_commands_put_wear_dents_and_maps_on_the_skin(blade, tmp_path):
     write(hit, blade, tmp_path / "map.csv")
     words = f"perturb nrel5mw -o {tmp_path} --landmarks 101 --format sections.csv --name worn"
     more = ["--erosion", "0.6,1,0.06,5mm", "--dent", "0.3,0.7,800mm,8mm"]
-    run = RUN.invoke(commands.app, [*words.split(), *more, "--deviation", f"{tmp_path}/map.csv"])
+    more += ["--deviation", f"{tmp_path}/map.csv", "--deviation-scale", "0.6"]
+    run = RUN.invoke(commands.app, [*words.split(), *more])
     assert run.exit_code == 0, run.output
     rows = np.loadtxt(tmp_path / "worn.sections.csv", delimiter=",", skiprows=1)
     own = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
     eta = np.unique(rows[:, 0])
     off = np.linalg.norm(rows[:, -3:].reshape(len(eta), 101, 3) - own.sections(eta), axis=-1)
-    for place, depth in (((0.4, 20), 0.01), ((0.3, 70), 0.008), ((0.8, 50), 0.005)):
+    for place, depth in (((0.4, 20), 0.006), ((0.3, 70), 0.008), ((0.8, 50), 0.005)):
         near = np.argmin(np.abs(eta - place[0]))
         about = slice(place[1] - 10, place[1] + 11)
         assert_allclose(off[near, about].max(), depth, rtol=0.15)
@@ -242,6 +272,7 @@ def test_commands_put_wear_dents_and_maps_on_the_skin(blade, tmp_path):
         (("--dent", "0.5,0.2,600,10mm"), "dent: size: got '600', must be a length with its unit"),
         (("--dent", "50,0.2,600mm,10mm"), "the span fraction and the place around"),
         (("--dent", "0.9,0.3,300mm,2m"), "can take: it crosses itself"),
+        (("--deviation-scale", "2"), "is for a map: add --deviation MAP.csv"),
     ],
 )
 def test_slips_are_answered_in_a_line(option, said, tmp_path):

@@ -19,6 +19,7 @@ from bladegen.fitting.wear.worn import APART, normals, worn
 from bladegen.measures import distances
 from bladegen.measures.surfaces import Surface
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.support.arguments import amount
 from bladegen.support.arrays import Array, readonly
 from bladegen.support.files import content_of
 
@@ -178,6 +179,18 @@ class DeviationMap:
         eta = united(self.eta, other.eta, apart=APART)
         values = sum(one.between(eta, self.u) for one in (self, other))
         return DeviationMap(eta, self.u, np.asarray(values))
+
+    def __mul__(self, factor: float) -> "DeviationMap":
+        """Return it so many times as large: 0.5 for half of it, -1 for as much the other way."""
+        if isinstance(factor, DeviationMap | np.ndarray):
+            raise BladegenError(
+                "deviation: is multiplied by a number, such as 0.5 * map; maps add up with +"
+            )
+        times = amount(factor, "deviation: factor", BladegenError)
+        return DeviationMap(self.eta, self.u, times * self.values)
+
+    __rmul__ = __mul__
+    __array_ufunc__ = None  # so that NumPy's numbers and arrays leave products to the map
 
     def between(self, eta: Array, u: Array) -> Array:
         """Return the values at span fractions (k,) and landmark parameters (n,), (k, n).

@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
+from bladegen.errors import BladegenError
+
 __all__ = ["NO_CHANGES", "Changes", "ChordLine"]
 
 
@@ -79,6 +81,10 @@ class Changes:
             metavar="MAP.csv", help="Put a deviation on the skin that `check --deviation` wrote."
         ),
     ] = None
+    deviation_scale: Annotated[
+        float,
+        typer.Option(help="The map's deviation times this: 0.5 for half of it, -1 the other way."),
+    ] = 1
     erosion: Annotated[
         str | None,
         typer.Option(
@@ -101,6 +107,7 @@ class Changes:
     def asked(self) -> bool:
         """Whether anything is to change."""
         shape = bool(self.pga or self.deviation or self.erosion or self.dent)
+        shape = shape or self.deviation_scale != 1  # is answered, if there is no map
         return shape or any(getattr(self, key) != getattr(Changes, key) for key in AFFINE)
 
     def shape_space(self) -> Any:
@@ -111,12 +118,19 @@ class Changes:
 
     def on_the_skin(self, blade: Any) -> Any:
         """Return wear and dents together, None if there are none."""
+        if self.deviation is None and self.deviation_scale != 1:
+            raise BladegenError(
+                "--deviation-scale: is for a map: add --deviation MAP.csv; --erosion and --dent "
+                "have depths of their own"
+            )
         if not (self.deviation or self.erosion or self.dent):
             return None
         from bladegen.cli.options.skin import dented, eroded
         from bladegen.fitting.deviations import DeviationMap
 
-        maps = [] if self.deviation is None else [DeviationMap.read(self.deviation)]
+        maps = []
+        if self.deviation is not None:
+            maps.append(self.deviation_scale * DeviationMap.read(self.deviation))
         if self.erosion:
             maps.append(DeviationMap.erosion(blade, **eroded(self.erosion)))
         maps += [DeviationMap.dent(blade, **dented(text)) for text in self.dent or []]

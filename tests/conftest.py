@@ -12,6 +12,7 @@ import gc
 import os
 
 os.environ["OMP_NUM_THREADS"] = os.environ.get("OMP_NUM_THREADS", "1")
+os.environ["BLADEGEN_PROGRESS"] = "0"  # what a slow machine takes long for is no error on stderr
 
 import signal
 import sys

@@ -130,6 +130,10 @@ def test_units_are_found_or_believed(coarse, unit, scale):
     pose = found(surface, "it", metres=None, unit=None if unit != "in" else unit)
     assert pose.scale == scale
     assert unit in pose.said[0]
+    if unit == "in":  # 3.4 m of millimetres
+        guessed = found(surface, "it", metres=None, unit=None)
+        assert guessed.scale == 1e-3
+        assert "it would be 86.5 m long: --unit in" in guessed.said[0]
 
 
 def test_a_file_whose_metres_are_called_millimetres_is_told_of(coarse):

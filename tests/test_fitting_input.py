@@ -8,7 +8,8 @@ import pytest
 import bladegen as bg
 from bladegen.errors import BladegenError, GeometryError
 from bladegen.fitting import sources
-from bladegen.measures import foreign
+from bladegen.fitting.placing.finding import found
+from bladegen.measures import foreign, surfaces
 from bladegen.surface.mesh import TriangleMesh, from_blade, surface
 
 
@@ -112,6 +113,39 @@ def test_a_blade_with_its_structure_is_fitted_by_its_solid(tmp_path):
     fitted = bg.fit(path, tolerance=1e-2)
     assert fitted.held
     assert any("2 sheets beside its solid" in str(one) for one in fitted.findings)
+
+
+@pytest.mark.parametrize("degrees", [3.0, 8.0])
+def test_a_root_that_is_cut_at_a_slant_does_not_turn_the_pitch_axis(degrees):
+    """Against the axis that the blade has; by circles it is as good as these are, 0.3 degrees."""
+    import pyvista as pv
+    from scipy.spatial.transform import Rotation
+
+    whole = from_blade(bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=101), stations=70)
+    lean = np.radians(degrees)
+    poly = pv.PolyData.from_regular_faces(whole.vertices, whole.faces)
+    normal = (np.sin(lean), 0.0, np.cos(lean))
+    left = poly.clip(normal=normal, origin=(0.0, 0.0, 1.0), invert=False)
+    left = left.extract_surface(algorithm=None).triangulate()
+    turn = Rotation.from_euler("xyz", [0.3, 0.7, 1.1]).as_matrix()
+    faces = np.asarray(left.faces).reshape(-1, 4)[:, 1:]
+    surface = surfaces.of_mesh(TriangleMesh(np.asarray(left.points, dtype=float) @ turn.T, faces))
+
+    def posed(root):
+        pose = found(surface, "it", metres=1.0, unit=None, frame="blade", root=root)
+        return pose, np.degrees(np.arccos(min(1.0, pose.axes[:, 2] @ turn[:, 2])))
+
+    pose, off = posed("circles")
+    assert off < 0.35
+    assert pose(surface.mesh.vertices)[:, 2].min() < -0.5 * lean  # z = 0 is where it is whole
+    assert any("the blade begins where it is whole" in one for one in pose.said)
+    assert posed("flange")[1] == pytest.approx(degrees, abs=1e-3)
+    doubted, off = posed("auto")
+    if degrees > 4.0:
+        assert off < 0.35
+    else:  # roots of blades lean as much: it cannot be known, and is said
+        assert off == pytest.approx(degrees, abs=1e-3)
+        assert any("if it is no flange but a cut, --root circles" in one for one in doubted.said)
 
 
 def test_what_breaks_off_inside_is_one_line_with_the_file(monkeypatch, mesh):

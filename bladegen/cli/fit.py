@@ -33,6 +33,18 @@ class Frame(StrEnum):
     blade = "blade"
 
 
+WITHIN = 0.02  # of the tolerance, for what takes up that airfoils are moved into windIO's 0 to 1
+SHOWN = 12  # airfoils in the table
+
+
+class Root(StrEnum):
+    """What the pitch axis follows."""
+
+    auto = "auto"
+    flange = "flange"
+    circles = "circles"
+
+
 @grouped
 def fit(
     source: Annotated[
@@ -72,6 +84,13 @@ def fit(
             "(twist is then zero at 90 % span), or the file's where these fit."
         ),
     ] = Frame.auto,
+    root: Annotated[
+        Root,
+        typer.Option(
+            help="What the pitch axis follows: the root's flange, the middle of its circles where "
+            "its end is a cut, or the flange unless it is more than 4 degrees off."
+        ),
+    ] = Root.auto,
     name: Annotated[str | None, typer.Option(help="The blade's name; the file's if not given.")] = (
         None
     ),
@@ -96,9 +115,11 @@ def fit(
 
     A report lies beside it. Exit with 1 if the tolerance is missed; the files are there then, too.
     """
+    from bladegen.errors import Finding
     from bladegen.exports.definitions import write
     from bladegen.fitting.fit import fit as fitted_to
     from bladegen.formats.reading import read
+    from bladegen.formats.windio.writing import within
     from bladegen.formats.writing import format_of
     from bladegen.support.files import replacing
 
@@ -112,11 +133,17 @@ def fit(
             unit=unit and unit.value,
             length=None if length is None else metres(length, "length", example="61.5m"),
             frame=frame.value,
+            root=root.value,
             name=name,
             progress=progress,
         )
         progress(f"writing {target}")
-        findings = write(fitted.definition, target, command=COMMAND.get(), polars="none")
+        definition, findings = fitted.definition, []
+        if row.title.startswith("windIO"):  # moved by itself it is a hundred times closer than fits
+            definition = within(
+                definition, lambda *one: findings.append(Finding(*one)), WITHIN * allowed
+            )
+        findings += write(definition, target, command=COMMAND.get(), polars="none")
         report = fitted.report() | {"format": row.title}
         told = target.with_suffix(".fit.json")
         with replacing(told) as temporary:
@@ -130,6 +157,7 @@ def fit(
         print_findings([str(finding) for finding in (*fitted.findings, *findings)])
         print_figures(f"{source} fitted", fitted.figures)
         _print_bands(fitted)
+        _print_airfoils(fitted, told)
         if fitted.parameters is not None:
             rows = [
                 [row["name"], f"{row['value']:.5g}", f"{row['standard_deviation']:.2g}"]
@@ -153,26 +181,33 @@ def _print_bands(fitted: Any) -> None:
         for band in fitted.bands()
     ]
     print_table(["span, %", "largest, mm", "99 %, mm", "RMS, mm", "mean (outside +), mm"], rows)
+
+
+def _print_airfoils(fitted: Any, told: Path) -> None:
+    """Print where some of the airfoils lie, evenly over the span; the report holds all."""
     places = fitted.places()
+    each = [s.airfoil for s in fitted.definition.stations]
+    eta = [place.eta for place in places]
+    shown = sorted(
+        {min(range(len(eta)), key=lambda k: abs(eta[k] - s / (SHOWN - 1))) for s in range(SHOWN)}
+    )
     rows = [
         [
-            f"{place.eta:.4f}",
-            f"{100 * airfoil.relative_thickness:.2f}",
-            *(f"{t:.3f}" for t in place.coordinates),
-            f"{place.distance:.3f}",
-            f"{place.spread:.1f}",
-            f"{place.away:.3f}",
-            place.nearest,
+            f"{places[k].eta:.3f}",
+            f"{100 * each[k].relative_thickness:.1f}",
+            " ".join(f"{1e3 * t:4.0f}" for t in places[k].coordinates),
+            f"{1e3 * places[k].distance:.0f}",
+            f"{places[k].spread:.1f}",
+            f"{1e3 * places[k].away:.0f}",
+            places[k].nearest,
         ]
-        for place, airfoil in zip(
-            places, (s.airfoil for s in fitted.definition.stations), strict=True
-        )
+        for k in shown
     ]
-    modes = [f"t{k + 1}" for k in range(len(places[0].coordinates))] if places else []
+    some = "airfoils" if len(shown) == len(places) else f"{len(shown)} of {len(places)} airfoils"
     print_table(
-        ["eta", "t/c, %", *modes, "off", "spread", "away", "nearest airfoil"],
+        ["eta", "t/c, %", "t", "off", "spread", "away", "nearest airfoil"],
         rows,
-        title="airfoils: t, off the space and away from the nearest in rad",
+        title=f"{some}: t, off the space, away from the nearest in mrad; all in {told.name}",
     )
 
 

@@ -5,17 +5,19 @@ Names come from files of anybody, so every text is shown as `errors.visible` has
 
 import json
 import logging
+import os
 import re
+import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import typer
 
-from bladegen.errors import visible
+from bladegen.errors import BladegenError, visible
 
 __all__ = [
     "log_to_terminal",
@@ -33,6 +35,9 @@ __all__ = [
 ALIKE = 3  # findings of a kind that are printed; the report holds all
 NUMBER = re.compile(r"[-+]?\d[\d.e+-]*")
 CLAUSE = re.compile(r"[,;] ")  # the last one says what kind of finding it is
+SOON, OFTEN = 2.0, 30.0  # s into a step until it is said where no terminal is, and said again
+WIDE = 200  # columns of what is no terminal: there a row stays a line
+ASKED = "BLADEGEN_PROGRESS"  # the variable that says how often instead [s]; 0 for never
 
 
 @cache
@@ -67,20 +72,89 @@ def remark(text: str) -> None:
 
 @contextmanager
 def progress_bar() -> Iterator[Any]:
-    """Show what is being done and for how long, on a terminal."""
+    """Show what is being done and for how long; elsewhere than on a terminal as `_lines` does."""
+    console = _stderr()
+    if not console.is_terminal:
+        with _lines() as say:
+            yield say
+        return
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    console = _stderr()
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    quiet = not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
+    with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("starting", total=None)
         yield lambda message: bar.update(task, description=visible(message))
 
 
 @contextmanager
+def _lines() -> Iterator[Callable[[str], None]]:
+    """Say each step that lasts in a plain line on stderr, after `SOON` and again every `OFTEN`.
+
+    Texts that differ in numbers, or behind a comma, such as in how many are done, are of one step.
+    """
+    often = _how_often()
+    start = time.monotonic()
+    step, text, due = "", "", start + min(SOON, often)
+    lock, ended = threading.Lock(), threading.Event()
+
+    def told(message: str) -> None:
+        nonlocal step, text, due
+        with lock:
+            text, kind = message, NUMBER.sub("", message.partition(",")[0])
+            if kind != step:
+                step, due = kind, time.monotonic() + min(SOON, often)
+
+    def watch() -> None:
+        nonlocal due
+        while not ended.wait(max(0.01, min(due - time.monotonic(), 0.25))):
+            with lock:
+                now, what = time.monotonic(), text
+                late = now >= due and bool(what)
+                due = now + often if late else due
+            if late:
+                with suppress(OSError, ValueError):  # nobody listens any more
+                    typer.echo(f"progress: {visible(what)} ({now - start:.0f} s)", err=True)
+
+    watching = threading.Thread(target=watch, name="progress", daemon=True)
+    if often > 0.0:
+        watching.start()
+    try:
+        yield told
+    finally:
+        ended.set()
+        if often > 0.0:
+            watching.join()
+
+
+def _how_often() -> float:
+    """Return how often a step is said [s], 0 for never."""
+    try:
+        return max(0.0, float(os.environ.get(ASKED, OFTEN)))
+    except ValueError:
+        raise BladegenError(
+            f"{ASKED}: got {os.environ[ASKED]!r}, must be seconds between two lines; 0 for none"
+        ) from None
+
+
+@contextmanager
 def variants_bar(count: int, what: str = "variants") -> Iterator[Any]:
-    """Show how many of `count` variants are whole, the rate, and the time that remains."""
+    """Show how many of `count` variants are whole, the rate, and the time that remains.
+
+    Elsewhere than on a terminal as `_lines` does.
+    """
+    console, start, first = _stderr(), time.monotonic(), -1
+
+    def rate(done: int) -> str:
+        nonlocal first
+        first = done if first < 0 else first
+        spent = time.monotonic() - start
+        return f"{(done - first) / spent:.1f}/s" if done > first else ""
+
+    if not console.is_terminal:
+        with _lines() as say:
+            say(f"0 of {count} {what}")
+            yield lambda done: say(f"{done} of {count} {what}, {rate(done)}".strip(", "))
+        return
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
@@ -90,7 +164,6 @@ def variants_bar(count: int, what: str = "variants") -> Iterator[Any]:
         TimeRemainingColumn,
     )
 
-    console = _stderr()
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -99,19 +172,9 @@ def variants_bar(count: int, what: str = "variants") -> Iterator[Any]:
         TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
-    quiet = not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
+    with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(what, total=count, rate="")
-        start, first = time.monotonic(), -1
-
-        def told(done: int) -> None:
-            nonlocal first
-            first = done if first < 0 else first
-            spent = time.monotonic() - start
-            rate = f"{(done - first) / spent:.1f}/s" if done > first else ""
-            bar.update(task, completed=done, rate=rate)
-
-        yield told
+        yield lambda done: bar.update(task, completed=done, rate=rate(done))
 
 
 def print_summary(folder: Path, name: str) -> None:
@@ -167,4 +230,7 @@ def print_table(columns: list[str], rows: list[list[str]], title: str | None = N
     table = Table(*whole, title=head, title_justify="left", box=box.SIMPLE_HEAD)
     for row in rows:
         table.add_row(*map(visible, row))
-    Console().print(table, markup=False, highlight=False)
+    console = Console()
+    if not console.is_terminal and "COLUMNS" not in os.environ:
+        console.width = WIDE
+    console.print(table, markup=False, highlight=False)

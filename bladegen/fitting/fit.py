@@ -17,8 +17,10 @@ from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import BladegenError, Finding, GeometryError
 from bladegen.fitting.fitted import Fitted
 from bladegen.fitting.like import model_like, parameters_of
-from bladegen.fitting.measuring import uncrossed
+from bladegen.fitting.measuring import Cutting, uncrossed
 from bladegen.fitting.placing.finding import FRAMES, UNITS, found
+from bladegen.fitting.placing.root import ROOTS
+from bladegen.fitting.sections.chains import Cut
 from bladegen.fitting.sections.cutting import Cutter
 from bladegen.fitting.sources import source_of
 from bladegen.fitting.stations import definition_of, fewest
@@ -33,6 +35,7 @@ from bladegen.surface.mesh import TriangleMesh
 __all__ = ["fit"]
 
 TOLERANCE = 1e-3  # m
+BEFORE = 1e-3  # m before the root, from which on points are of no blade
 AIRFOILS = 0.4  # of the tolerance, for shapes between stations
 SAMPLES = 6_000  # points of the source that are held against the blade
 
@@ -44,6 +47,7 @@ def fit(
     tolerance: float = TOLERANCE,
     unit: str | None = None,
     frame: str = "auto",
+    root: str = "auto",
     name: str | None = None,
     length: float | None = None,
     samples: int = SAMPLES,
@@ -64,7 +68,10 @@ def fit(
         "m", "mm", "cm", "in" or "ft"; by default what the file says, or what its size suggests. Of
         a CAD file, what its millimetres are.
     frame : str
-        "auto", "file" or "blade": see `pose.found`.
+        "auto", "file" or "blade": see `finding.found`.
+    root : str
+        What the pitch axis follows: the root's "flange", its "circles" where its end is a cut, or
+        "auto": the flange, unless it is more than 4 degrees off the circles' axis.
     name : str, optional
         The blade's name; by default the file's.
     length : float, optional
@@ -92,11 +99,12 @@ def fit(
     if length is not None and not amount(length, "length", BladegenError) > 0.0:
         raise BladegenError(f"length: got {length:g} m, must be positive")
     one_of(frame, FRAMES, "frame", BladegenError)
+    one_of(root, ROOTS, "root", BladegenError)
     if unit is not None:
         one_of(unit, UNITS, "unit", BladegenError)
     model = None if like is None else model_like(like)
     progress("reading")
-    side, cloud, noise = source_of(source, length, unit)
+    side, cloud, noise = source_of(source, length, unit, progress)
     if unit is not None and side.surface.patches:  # they are in metres by now
         side = side if isinstance(source, str | Path) else _scaled(side, unit)
         unit = None
@@ -104,11 +112,17 @@ def fit(
     said_of = str(source) if isinstance(source, str | Path) else called
     progress("finding the blade")
     pose = found(
-        side.surface, said_of, metres=1.0 if side.measured else None, unit=unit, frame=frame
+        side.surface,
+        said_of,
+        metres=1.0 if side.measured else None,
+        unit=unit,
+        frame=frame,
+        root=root,
+        flanged=cloud is None,
     )
     surface = pose.surface(side.surface)
-    cuts = Cutter(surface).cuts
     progress("measuring sections")
+    cuts = _counted(Cutter(surface).cuts, progress)
     text = said_of if isinstance(source, str | Path) else ""
     try:
         sections, length = surveyed(cuts, surface.mesh.vertices, tolerance, said_of)
@@ -117,7 +131,7 @@ def fit(
             sections, said = uncrossed(sections, said_of)
             remarks = (*remarks, *said)
         progress("choosing stations")
-        rows = fewest(sections, length, AIRFOILS * tolerance, name=called)
+        rows = fewest(sections, length, AIRFOILS * tolerance, name=called, progress=progress)
         definition = definition_of(sections, rows, length, name=called, source=text)
         skin = surfaces.of_blade(Blade.from_definition(definition, trailing_edge=AsGiven()))
     except GeometryError as error:
@@ -132,9 +146,12 @@ def fit(
         surface.mesh.vertices[np.unique(surface.mesh.faces)] if cloud is None else pose(cloud),
         whole(samples, "samples", BladegenError),
     )
+    points = points[points[:, 2] > -BEFORE]
     residuals = distances.signed(points, skin)
     findings = [Finding("source", text) for text in (*pose.said, *remarks)]
     spans = np.clip(points[:, 2] / length, 0.0, 1.0)
+    if model is not None:
+        progress("fitting parameters")
     return Fitted(
         definition,
         pose,
@@ -148,6 +165,20 @@ def fit(
         tuple(findings),
         None if model is None else parameters_of(points, model),
     )
+
+
+def _counted(cuts: Cutting, progress: Callable[[str], None]) -> Cutting:
+    """Let cuts say how many they are."""
+    done = 0
+
+    def cut(origins: Array, frames: Array) -> list[Cut]:
+        nonlocal done
+        found = cuts(origins, frames)
+        done += len(found)
+        progress(f"measuring sections, {done} cuts so far")
+        return found
+
+    return cut
 
 
 def _scaled(side: Side, unit: str) -> Side:

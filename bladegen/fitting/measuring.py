@@ -27,6 +27,7 @@ LANDMARKS = 401
 SOUND = 0.75  # of the sections, at least: fewer make no blade
 SETTLED = 1e-5  # m that the axis still moves
 ROUNDS = 8
+LEVER = 0.01  # of the span, over which the axis' last direction is taken: sections scatter
 Cutting = Callable[[Array, Array], list[Cut]]
 
 
@@ -89,11 +90,13 @@ def axis_of(eta: Array, prebend: Array, length: float) -> ReferenceAxis:
     """Return the axis y = 0 with a prebend (k,) at span fractions (k,), prolonged straight."""
     ends = np.array([0.0, 1.0])
     slope = np.diff(prebend) / np.diff(eta)
+    behind = int(np.searchsorted(eta, eta[-1] - LEVER, side="right")) - 1
+    steep = (prebend[-1] - prebend[behind]) / (eta[-1] - eta[behind]) if behind >= 0 else slope[-1]
     if eta[0] > 0.0:
         prebend = np.concatenate([[prebend[0] - slope[0] * eta[0]], prebend])
         eta = np.concatenate([[0.0], eta])
     if eta[-1] < 1.0:
-        prebend = np.concatenate([prebend, [prebend[-1] + slope[-1] * (1.0 - eta[-1])]])
+        prebend = np.concatenate([prebend, [prebend[-1] + steep * (1.0 - eta[-1])]])
         eta = np.concatenate([eta, [1.0]])
     return ReferenceAxis(
         Distribution(eta, prebend),

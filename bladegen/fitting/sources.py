@@ -7,7 +7,7 @@ import numpy as np
 
 from bladegen.errors import BladegenError, FileError, GeometryError
 from bladegen.fitting.clouds.reading import TEXTS, is_cloud, points_of, sound
-from bladegen.fitting.clouds.surface import surface_of_points
+from bladegen.fitting.clouds.surface import Progress, quiet, surface_of_points
 from bladegen.fitting.placing.copies import one_of_copies
 from bladegen.fitting.placing.finding import SHORTEST, UNITS
 from bladegen.fitting.tables.lofting import surface_of_sections
@@ -23,7 +23,10 @@ __all__ = ["source_of"]
 
 
 def source_of(
-    source: str | Path | Side | TriangleMesh | Array, length: float | None, unit: str | None
+    source: str | Path | Side | TriangleMesh | Array,
+    length: float | None,
+    unit: str | None,
+    progress: Progress = quiet,
 ) -> tuple[Side, Array | None, float]:
     """Return a source's surface, its points if it has no surface of its own, and their noise.
 
@@ -35,17 +38,20 @@ def source_of(
         Of the blade [m], for tables of sections at span fractions.
     unit : str, optional
         Of `UNITS`: what the millimetres of a CAD file are.
+    progress : callable
+        Told what is being done.
     """
     if isinstance(source, np.ndarray):
-        return _clouded(numbers(source, "source", BladegenError, "points (m, 3)"), "the points")
+        points = numbers(source, "source", BladegenError, "points (m, 3)")
+        return _clouded(points, "the points", progress)
     if isinstance(source, str | Path) and Path(source).suffix.lower() in TEXTS:
-        return _tabled(table_of(Path(source)), length, unit)
+        return _tabled(table_of(Path(source)), length, unit, progress)
     if length is not None:
         raise BladegenError(
             "length: is for tables of sections at span fractions; other sources have their own"
         )
     if isinstance(source, str | Path) and is_cloud(Path(source)):
-        return _clouded(points_of(Path(source)), str(source))
+        return _clouded(points_of(Path(source)), str(source), progress)
     if isinstance(source, Side):
         side = source
     elif isinstance(source, TriangleMesh):
@@ -76,7 +82,7 @@ def _filed(path: Path, unit: str | None) -> Side:
 
 
 def _tabled(
-    table: Table, length: float | None, unit: str | None
+    table: Table, length: float | None, unit: str | None, progress: Progress
 ) -> tuple[Side, Array | None, float]:
     """Return the surface through a table's sections, or about its points."""
     if unit is not None and table.metres not in (None, UNITS[unit]):
@@ -87,7 +93,7 @@ def _tabled(
     metres = table.metres
     if rows is None:
         points = sound(table.points * (metres or 1.0), table.path)
-        return _clouded(points, table.path, measured=metres is not None)
+        return _clouded(points, table.path, progress, measured=metres is not None)
     told = None if length is None else length / (metres or UNITS[unit or "m"])
     mesh, said = surface_of_sections(table, rows, told)
     vertices = sound(mesh.vertices * (metres or 1.0), table.path)
@@ -95,10 +101,12 @@ def _tabled(
     return Side(table.path, surface, measured=metres is not None, remarks=said), None, 0.0
 
 
-def _clouded(points: Array, name: str, *, measured: bool = False) -> tuple[Side, Array, float]:
+def _clouded(
+    points: Array, name: str, progress: Progress, *, measured: bool = False
+) -> tuple[Side, Array, float]:
     if points.ndim != 2 or points.shape[1] != 3:
         raise BladegenError(f"source: got the shape {points.shape}, must be points (m, 3)")
-    cloud = surface_of_points(points, name)
+    cloud = surface_of_points(points, name, progress)
     said = f"{len(points)} points, smoothed; they scatter by {cloud.noise:.3g} of their unit"
     side = Side(name, surfaces.of_mesh(cloud.mesh), measured=measured, remarks=(said,))
     return side, points, cloud.noise

@@ -5,6 +5,8 @@ at the ends, at the end of a round root, and wherever a blade of those kept miss
 section by more than allowed.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from bladegen.blade.blade import Blade
@@ -69,7 +71,14 @@ def missed(definition: BladeDefinition, sections: Sections) -> Array:
     return result
 
 
-def fewest(sections: Sections, length: float, tolerance: float, *, name: str) -> Indices:
+def fewest(
+    sections: Sections,
+    length: float,
+    tolerance: float,
+    *,
+    name: str,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Indices:
     """Return at which sections airfoils are kept, so that all are met within a tolerance [m]."""
     count = len(sections.eta)
     last_round = int(np.count_nonzero(sections.rounded)) - 1
@@ -78,6 +87,7 @@ def fewest(sections: Sections, length: float, tolerance: float, *, name: str) ->
     rows = {0, start, count - 1, *(int(np.argmin(np.abs(sections.eta - w))) for w in wanted)}
     for _ in range(ROUNDS):
         kept = np.array(sorted(rows))
+        progress(f"choosing stations, {len(kept)} of {count} sections so far")
         try:
             off = missed(definition_of(sections, kept, length, name=name), sections)
         except GeometryError:

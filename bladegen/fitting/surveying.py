@@ -32,6 +32,7 @@ FIRST = np.unique(
 )
 INSIDE = (1e-6, 1e-5, 1e-4, 5e-4, 2e-3, 5e-3)  # of the length, by which the last plane is inside
 NEAR_TIP = (np.array([0.01, 0.006]), np.array([0.003, 0.0015]), np.array([0.0008, 0.0004]))
+APART = 1e-6  # of the length, between places on the axis
 WHOLE, ALIKE = 0.5, 1.25  # of chord and thickness next to the tip: else it is half cut off
 DISTRIBUTIONS = 0.2  # of the tolerance, for each of chord, twist, offset and prebend
 SURE = 0.05  # of the tolerance: what is off by less half way is so by no chance
@@ -66,9 +67,9 @@ def surveyed(cuts: Cutting, points: Array, tolerance: float, name: str) -> tuple
         axis = axis_of(z / length, prebend, length)
         more = measured(cuts, axis, 1.0 - near, name=name, guide=coarse)
         z, prebend = np.append(z, more.eta * length), np.append(prebend, more.prebend)
-        order = np.argsort(z)
-        z, prebend = z[order], prebend[order]
+        z, prebend = _in_order(z, prebend, length)
         length = length_along(points, axis_of(z / length, prebend, length))
+        z, prebend = _in_order(z, prebend, length)
     axis = axis_of(z / length, prebend, length)
     last = _to_the_tip(cuts, axis, name)
     vague = vagueness(last, VAGUE * tolerance)
@@ -80,13 +81,28 @@ def surveyed(cuts: Cutting, points: Array, tolerance: float, name: str) -> tuple
         wanted = axis_of(eta, steady(sections, sections.prebend, vague), length)
         if np.abs(wanted(eta) - axis(eta)).max() < STILL * tolerance:
             break
+        try:
+            turned = measured(cuts, wanted, eta, name=name)
+        except GeometryError:  # at the tip, where an axis through noise leaves the surface
+            break
         axis = wanted
-        sections, _ = _steadied(measured(cuts, axis, eta, name=name), length, tolerance, twist)
+        sections, _ = _steadied(turned, length, tolerance, twist)
     sections = _on_axis(sections, axis, tolerance)
     reach = length * float(sections.eta[-1])
     eta = sections.eta / sections.eta[-1]
     eta[0] = 0.0
     return replace(sections, eta=eta), reach
+
+
+def _in_order(z: Array, prebend: Array, length: float) -> tuple[Array, Array]:
+    """Return places and prebend from root to tip, but for those on another or beyond the tip.
+
+    Through noise the tip is found farther in, or farther out, than it was before.
+    """
+    order = np.argsort(z)
+    z, prebend = z[order], prebend[order]
+    kept = (z <= length) & (np.diff(z, prepend=-np.inf) > APART * length)
+    return z[kept], prebend[kept]
 
 
 def _steadied(

@@ -6,7 +6,9 @@ means by least squares with penalties on second differences of its coefficients 
 left out.  Points that lie far off get little weight (Tukey).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -16,12 +18,16 @@ from bladegen.fitting.clouds.coordinates import Ellipses, about
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.mesh import TriangleMesh
 
-__all__ = ["Cloud", "surface_of_points"]
+__all__ = ["Cloud", "Progress", "quiet", "surface_of_points"]
+
+Progress = Callable[[str], None]
 
 FEWEST = 2000  # points of a cloud
 AROUND, ALONG = 144, 56  # coefficients along phi and z
 CELLS = 720, 480  # along phi and z
 WEIGHTS = (1e-6, 1e-4, 1e-2, 1e0)  # of the penalties, times the mean weight of a coefficient
+ROUNDS = 3  # of weighting points that lie far off
+FITS = 2 * len(WEIGHTS) + ROUNDS
 LEFT_OUT = 8  # every so-manieth block of cells: holes are to be bridged
 BLOCKS = 4.0, 60.0  # a radian, and a span
 FAR, FARTHER = 4.685, 0.1  # standard deviations, Tukey's; and of rho, at least: edges are sharp
@@ -29,6 +35,10 @@ ROWS, COLUMNS = 360, 480  # of the mesh
 END = 0.002  # of the span, where caps lie
 SECTORS = 24  # of a rim
 CLOSE = np.radians(5.0)  # between the longest axis and an axis of the file
+
+
+def quiet(_: str) -> None:
+    """Say nothing of what is being done."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +57,8 @@ class Cloud:
     noise: float
 
 
-def surface_of_points(points: Array, name: str) -> Cloud:
-    """Return the surface that points (m, 3) scatter about.
+def surface_of_points(points: Array, name: str, progress: Progress = quiet) -> Cloud:
+    """Return the surface that points (m, 3) scatter about, telling `progress` what is being done.
 
     Raises
     ------
@@ -57,6 +67,7 @@ def surface_of_points(points: Array, name: str) -> Cloud:
     """
     if len(points) < FEWEST:
         raise GeometryError(f"{name}: {len(points)} points, at least {FEWEST} are needed")
+    progress(f"smoothing {len(points)} points")
     axes, start = _along(points, name)
     own = points @ axes - start
     ellipses = about(own)
@@ -65,7 +76,12 @@ def surface_of_points(points: Array, name: str) -> Cloud:
     rho, phi = ellipses.flattened(own[inside])
     z = own[inside, 2] / length
     cells, counts = _cells(rho, phi, z)
-    coefficients = _fitted(*cells, counts)
+    solved = count(1)
+    coefficients = _fitted(
+        *cells,
+        counts,
+        lambda: progress(f"smoothing {len(points)} points, fit {next(solved)} of {FITS}"),
+    )
     at_z = np.linspace(0.0, 1.0, ROWS)
     at_phi = _eased(np.linspace(-np.pi, np.pi, COLUMNS, endpoint=False))
     surface = _basis_z(at_z) @ coefficients @ _basis_phi(at_phi).T.toarray()
@@ -149,16 +165,17 @@ EASE = 0.4
 _TABLE = np.linspace(-np.pi, np.pi, 4001)
 
 
-def _fitted(rho: Array, phi: Array, z: Array, count: Array) -> Array:
-    """Return the coefficients (ALONG, AROUND) of cells' means."""
+def _fitted(rho: Array, phi: Array, z: Array, count: Array, told: Callable[[], None]) -> Array:
+    """Return the coefficients (ALONG, AROUND) of cells' means; each fit is told of."""
     design = _rows(_basis_z(z), _basis_phi(phi))
     weight = count.copy()
     chosen = None
-    for _ in range(3):
+    for _ in range(ROUNDS):
         if chosen is None:
             patch = 7 * np.floor(z * BLOCKS[1]) + 3 * np.floor((phi + np.pi) * BLOCKS[0])
             test = patch % LEFT_OUT == 0
-            chosen = _best(design, rho, weight, test)
+            chosen = _best(design, rho, weight, test, told)
+        told()
         made = _solved(design, rho, weight, *chosen)
         off = rho - design @ made
         scale = 1.4826 * float(np.median(np.abs(off)))
@@ -167,13 +184,16 @@ def _fitted(rho: Array, phi: Array, z: Array, count: Array) -> Array:
     return np.asarray(made.reshape(ALONG, AROUND))
 
 
-def _best(design: Any, rho: Array, weight: Array, test: Any) -> tuple[float, float]:
+def _best(
+    design: Any, rho: Array, weight: Array, test: Any, told: Callable[[], None]
+) -> tuple[float, float]:
     """Return the penalties' weights that predict the cells best that are left out."""
     kept = np.where(test, 0.0, weight)
     best, least = (WEIGHTS[1], WEIGHTS[1]), np.inf
     rows = design[np.flatnonzero(test)]
 
     def missed(pair: tuple[float, float]) -> float:
+        told()
         off = rho[test] - rows @ _solved(design, rho, kept, *pair)
         return float(np.mean(np.minimum(off * off * weight[test], _most(off, weight[test]))))
 

@@ -19,6 +19,7 @@ __all__ = ["FRAMES", "SHORTEST", "UNITS", "found"]
 FRAMES = ("auto", "file", "blade")
 UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "ft": 0.3048}
 METRES, MILLIMETRES = 300.0, 2000.0  # lengths below the first are metres, above the other mm
+SMALL = 20.0  # m: in such a unit it may be a model, or in inches a blade
 SHORTEST = 1.0  # m of a blade; shorter ones are worth a word
 PLANES = 41  # at which a surface is first looked at
 SLENDER = 3.0  # times as long as wide, at least
@@ -31,7 +32,14 @@ ENOUGH = 0.5  # of the planes that must cut an outline
 
 
 def found(
-    surface: Surface, name: str, *, metres: float | None, unit: str | None, frame: str = "auto"
+    surface: Surface,
+    name: str,
+    *,
+    metres: float | None,
+    unit: str | None,
+    frame: str = "auto",
+    root: str = "auto",
+    flanged: bool = True,
 ) -> Pose:
     """Find a blade in a file.
 
@@ -49,6 +57,11 @@ def found(
         "file": the file's own axes, up to their names, are the blade's; "blade": they follow from
         the shape alone, and twist is zero at 90 % span; "auto": the file's where these fit.
 
+    root : str
+        What the pitch axis follows: "flange", "circles" or "auto", see `root.upright`.
+    flanged : bool
+        Whether its ends can be flanges; those of a surface through a cloud are none.
+
     Raises
     ------
     GeometryError
@@ -60,7 +73,7 @@ def found(
     if _root_last(widths):
         pose = _turned(pose, surface)
         widths = widths[::-1]
-    pose, diameter = upright(pose, surface, said)
+    pose, diameter = upright(pose, surface, said, root=root, flanged=flanged)
     pose = sided(pose, surface, name, said)
     own = _own_axes(pose, diameter) if frame != "blade" else None
     if own is None and frame == "file":
@@ -110,6 +123,8 @@ def _scaled(
         name = "m" if length < METRES else "mm" if length > MILLIMETRES else "cm"
         scale = UNITS[name]
         said = f"the file says no unit; a length of {length:.5g} is taken to be in {name}"
+        if scale * length < SMALL <= UNITS["in"] * length:
+            said += f"; were it inches, it would be {UNITS['in'] * length:.3g} m long: --unit in"
     return replace(pose, scale=scale, origin=scale * pose.origin), [said]
 
 

@@ -50,11 +50,11 @@ class Outline:
         return float(np.hypot(*(self.points[0] - self.points[-1])))
 
 
-def is_round(outline: Array) -> bool:
-    """Tell whether an outline is a circle."""
+def is_round(outline: Array, within: float = ROUND) -> bool:
+    """Tell whether an outline is a circle, but for a share of its radius."""
     centre, radius = circle_of(outline)
     away = np.hypot(*(outline - centre).T)
-    return bool(np.all(np.abs(away - radius) < ROUND * radius))
+    return bool(np.all(np.abs(away - radius) < within * radius))
 
 
 def circle_of(points: Array) -> tuple[Array, float]:

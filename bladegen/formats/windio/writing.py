@@ -99,8 +99,8 @@ def airfoil_entries(
     return entries
 
 
-def within(definition: BladeDefinition, note: Note) -> BladeDefinition:
-    """Return the same blade with airfoils whose x lies within windIO's 0 to 1.
+def within(definition: BladeDefinition, note: Note, off: float = MOVED) -> BladeDefinition:
+    """Return the same blade with airfoils whose x lies within windIO's 0 to 1, but for `off` [m].
 
     They are moved along their chords and made smaller where that takes it; the blade has unit
     chords anyway, and the offset along the chord takes up the move.
@@ -136,12 +136,12 @@ def within(definition: BladeDefinition, note: Note) -> BladeDefinition:
     stations = [station.eta for station in definition.stations]
     offset, pitch, chord = definition.section_offset_y, definition.pitch_axis, definition.chord
     if pitch is not None:
-        share = MOVED / float(chord.values.max())
+        share = off / float(chord.values.max())
         made = sampled(lambda eta: pitch(eta) + shift(eta), united(pitch.grid, stations), share)
         return replace(result, pitch_axis=made)
     assert offset is not None  # a definition has one of both
     grid = united(offset.grid, chord.grid, stations)
-    made = sampled(lambda eta: offset(eta) + chord(eta) * shift(eta), grid, MOVED)
+    made = sampled(lambda eta: offset(eta) + chord(eta) * shift(eta), grid, off)
     return replace(result, section_offset_y=made)
 
 

@@ -33,6 +33,7 @@ __all__ = ["DEFAULT_TOLERANCE", "Solid", "cap", "closed", "edge_strip", "solid"]
 logger = logging.getLogger(__name__)
 DIGITS = 6  # of a pole's coordinates in mm: nanometres; more would only make files larger
 SEWING = 1e-4  # mm; edges of one net meet to rounding, so this is slack, not repair
+NONE = np.zeros(0)  # knots that are not added
 DEFAULT_TOLERANCE = 0.3e-3  # m
 
 
@@ -157,14 +158,13 @@ def _faces(
     net: SurfaceNet, sides: tuple[str, str], blunt: bool, tip: Tip, split: bool
 ) -> list[tuple[str, Any]]:
     """Make the faces of a solid by name, in pieces if it is to be split."""
-    none = np.zeros(0)
     suction, pressure = (Patch(h.poles, h.u_knots, h.v_knots) for h in net.halves())
-    more_u = pieces.shorter(suction.u_knots, pieces.LONGEST_AROUND) if split else none
-    more_v = pieces.shorter(net.v_knots, pieces.LONGEST_ALONG) if split else none
+    more_u = pieces.shorter(suction.u_knots, pieces.LONGEST_AROUND) if split else NONE
+    more_v = pieces.shorter(net.v_knots, pieces.LONGEST_ALONG) if split else NONE
     suction = pieces.with_knots(suction, more_u, more_v)
     pressure = pieces.with_knots(pressure, pieces.mirrored(more_u), more_v)
-    u = pieces.cuts(suction.u_knots, pieces.AROUND) if split else none
-    v = pieces.cuts(suction.v_knots, pieces.ALONG) if split else none
+    u = pieces.cuts(suction.u_knots, pieces.AROUND) if split else NONE
+    v = pieces.cuts(suction.v_knots, pieces.ALONG) if split else NONE
     cut = [pieces.cut(suction, u, v), pieces.cut(pressure, pieces.mirrored(u), v)]
     faces = [
         face
@@ -175,18 +175,27 @@ def _faces(
     ]
     if blunt:
         strip = edge_strip(net.poles, net.v_knots)
-        rows = pieces.cut(pieces.with_knots(strip, none, more_v), none, v)
+        rows = pieces.cut(pieces.with_knots(strip, NONE, more_v), NONE, v)
         faces += _numbered(EDGE, [shaping.face(shaping.surface(*row[0])) for row in rows])
     faces.append((ROOT, cap([p for rows in cut for p in rows[0]], 0, blunt)))
+    return faces + tip_faces(net, tip, [p for rows in cut for p in rows[-1]], more_u, u)
+
+
+def tip_faces(
+    net: SurfaceNet, tip: Tip, around: list[Patch], more_u: Array = NONE, u: Array = NONE
+) -> list[tuple[str, Any]]:
+    """Make the faces that close a net's tip [mm] by name, flat within patches around it, or round.
+
+    A round one has more knots about the chord, and is cut at some, if they are given.
+    """
     poles = rounded(net, tip)
     if poles is None:
-        faces.append((TIP, cap([p for rows in cut for p in rows[-1]], -1, blunt)))
-        return faces
+        return [(TIP, cap(around, -1, net.blunt))]
     # OCCT's quadrature takes as many points along u as v has knot spans: v goes to the nose
     own = Patch(poles.swapaxes(0, 1), BEZIER, net.halves()[0].u_knots)
-    across = pieces.cut(pieces.with_knots(own, none, more_u), none, u)
-    faces += _numbered(TIP, [shaping.face(shaping.surface(*row[0])) for row in across])
-    if blunt:
+    across = pieces.cut(pieces.with_knots(own, NONE, more_u), NONE, u)
+    faces = _numbered(TIP, [shaping.face(shaping.surface(*row[0])) for row in across])
+    if net.blunt:
         edge = shaping.surface(edge_poles(poles)[[-1, 0]], _LINEAR, BEZIER)
         faces.append((TIP_EDGE, shaping.face(edge)))
     return faces

@@ -162,7 +162,7 @@ class Options:
             found |= {f"volume_{k}": word(v) for k, v in grown if v is not None}
         if kind in (Kind.triangles, Kind.table):
             found["stations"] = word(self.stations)
-        if kind in (Kind.solid, Kind.triangles, Kind.grid, Kind.volume):  # which curves end before
+        if kind in (Kind.solid, Kind.structure, Kind.triangles, Kind.grid, Kind.volume):
             found["tip"] = word(self.tip)
         if kind in (Kind.triangles, Kind.grid, Kind.volume):
             found["unit"] = _FIXED_UNITS.get(suffix, self.unit)

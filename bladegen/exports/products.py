@@ -19,7 +19,6 @@ from bladegen.exports.provenance import Provenance, made_from
 from bladegen.surface import mesh
 from bladegen.surface.grids import grid
 from bladegen.surface.inner.inner import TOLERANCE
-from bladegen.surface.tips import flat_tip
 from bladegen.surface.volumes import volume
 
 __all__ = ["Products", "require"]
@@ -93,10 +92,9 @@ class Products:
         """The skin, cut where layers end, the webs, and the inner surface."""
         layup, solid = self._layup(Kind.structure), self.solid
         self.progress("cutting the skin where layers end")
-        made = assembly.inside(solid, layup, max(TOLERANCE, self.options.tolerance))
+        tolerance = max(TOLERANCE, self.options.tolerance)
+        made = assembly.inside(solid, layup, tolerance, self.options.tip)
         self.remarks.extend(made.findings)
-        if self.options.tip is not flat_tip:
-            self.remarks.append(Finding("structure", "its skin ends flat, without the round tip"))
         return made
 
     def _layup(self, kind: Kind) -> Layup:

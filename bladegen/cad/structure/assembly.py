@@ -6,7 +6,7 @@ its own (`bladegen.surface.inner`).  Millimetres; OCP comes late.
 """
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -17,14 +17,15 @@ from bladegen.blade.layup.layup import Layup
 from bladegen.cad import pieces, shaping, step_documents
 from bladegen.cad.pieces import Patch
 from bladegen.cad.shapes import MILLIMETRES, area
-from bladegen.cad.solids import Solid, cap, closed, edge_strip
+from bladegen.cad.solids import Solid, cap, closed, edge_strip, tip_faces
 from bladegen.cad.step_documents import Part
 from bladegen.cad.structure.inner_part import inner_part
 from bladegen.cad.structure.zones import Bay, bays_of
 from bladegen.errors import Finding
 from bladegen.support.arrays import Array
 from bladegen.surface.inner.inner import TOLERANCE
-from bladegen.surface.regions import EDGE, ROOT, TIP, colour
+from bladegen.surface.regions import EDGE, ROOT, colour
+from bladegen.surface.tips import Tip, flat_tip
 
 __all__ = ["Inside", "inside", "write_structure"]
 
@@ -87,8 +88,8 @@ class _Zone:
         return f"{self.side}: {' + '.join(self.partly)}" if self.partly else self.side
 
 
-def inside(solid: Solid, layup: Layup, tolerance: float = TOLERANCE) -> Inside:
-    """Return the skin, webs and inner surface of a blade whose solid ends flat.
+def inside(solid: Solid, layup: Layup, tolerance: float = TOLERANCE, tip: Tip = flat_tip) -> Inside:
+    """Return the skin, webs and inner surface of a blade.
 
     Parameters
     ----------
@@ -98,6 +99,8 @@ def inside(solid: Solid, layup: Layup, tolerance: float = TOLERANCE) -> Inside:
         Its layers and webs.
     tolerance : float
         Largest distance of the inner surface to where layers end aimed at [m].
+    tip : callable
+        The solid's; webs and inner surface end at the last section.
 
     Raises
     ------
@@ -127,7 +130,8 @@ def inside(solid: Solid, layup: Layup, tolerance: float = TOLERANCE) -> Inside:
             lines = [*lines[:-1], left, right]
         for web, (foot, other) in bay.feet.items():
             webs.setdefault(web, []).append(shaping.ruled(lines[foot], lines[other]))
-    others = [(ROOT, cap(halves, 0, net.blunt)), (TIP, cap(halves, -1, net.blunt))]
+    scaled = replace(net, poles=net.poles * MILLIMETRES)
+    others = [(ROOT, cap(halves, 0, net.blunt)), *tip_faces(scaled, tip, halves)]
     if net.blunt:
         strip = edge_strip(net.poles * MILLIMETRES, net.v_knots)
         rows = pieces.cut(strip, np.zeros(0), breaks)

@@ -52,8 +52,9 @@ def evaluated(u: Array, mean: Array, modes: Array, at: Array) -> tuple[Array, Ar
 def _require_fine(u: Array, mean: Array, modes: Array) -> None:
     """Raise if the landmarks are too few to say what lies between them."""
     columns = np.concatenate([mean[None], modes])
-    halves = SectionSplines(u[::2]).values(u) if len(u) >= 9 else None
-    missed = np.inf if halves is None else np.abs(halves @ columns[:, ::2] - columns).max()
+    half = np.union1d(np.arange(0, len(u), 2), [len(u) - 1])  # both ends, of an even number too
+    halves = SectionSplines(u[half]).values(u) if len(u) >= 9 else None
+    missed = np.inf if halves is None else np.abs(halves @ columns[:, half] - columns).max()
     error = float(missed) * np.sqrt(len(u)) / HALVED
     if not error <= COARSE:
         raise SpaceError(

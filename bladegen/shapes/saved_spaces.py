@@ -51,10 +51,10 @@ def _of_g2aero(path: Path, held: dict[str, Array]) -> tuple[dict[str, Array], st
     mean, rows, data = (np.asarray(held[k], dtype=float) for k in ("karcher_mean", "Vh", "coords"))
     n, many = len(mean), len(rows)
     shapes = (mean.shape, rows.shape, held["M_mean"].shape, held["b_mean"].shape, data.ndim)
-    if shapes != ((n, 2), (many, 2 * n), (2, 2), (2,), 2) or n % 2 == 0 or not data.size:
+    if shapes != ((n, 2), (many, 2 * n), (2, 2), (2,), 2) or n < 5 or not data.size:
         raise SpaceError(
             f"{path}: its Vh, karcher_mean and coords have the shapes {rows.shape}, {mean.shape} "
-            f"and {data.shape}, must be (r, 2 n), (n, 2) and (m, r), n odd"
+            f"and {data.shape}, must be (r, 2 n), (n, 2) and (m, r), n at least 5"
         )
     order = slice(None)
     plain = mean @ held["M_mean"] + held["b_mean"]
@@ -74,11 +74,20 @@ def _of_g2aero(path: Path, held: dict[str, Array]) -> tuple[dict[str, Array], st
 
 
 def _places(points: Array) -> Array:
-    """Return the landmark parameters (n,) of a shape's points: `arc_lengths.divided` undone."""
+    """Return the landmark parameters (n,) of a shape's points: `arc_lengths.divided` undone.
+
+    G2Aero divides the whole contour evenly, so that the leading edge lies between two landmarks:
+    where the parabola through the farthest three from the trailing edge is highest.
+    """
     steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
     share = np.concatenate([[0.0], np.cumsum(steps)])
     share /= share[-1]
-    return divided(share, 1.0 - share[len(share) // 2])  # cot(pi (1 - x)) = -cot(pi x)
+    far = np.sum((points - 0.5 * (points[0] + points[-1])) ** 2, axis=-1)
+    middle = int(np.clip(np.argmax(far), 1, len(far) - 2))
+    near = slice(middle - 1, middle + 2)
+    bend, slope, _ = np.polyfit(share[near] - share[middle], far[near] - far[middle], 2)
+    edge = share[middle] - 0.5 * slope / bend if bend < 0.0 else share[middle]
+    return divided(share, 1.0 - float(edge))  # cot(pi (1 - x)) = -cot(pi x)
 
 
 def problem_of(arrays: dict[str, Array]) -> str | None:

@@ -313,6 +313,29 @@ def test_places_and_names_are_what_they_are_taken_for(folder):
         next(family.batches(()))
 
 
+def test_conditions_on_arrays_over_span_say_where(folder):
+    """A plain "thickness < 0.3" had no answer but that there is no such name."""
+    family = bg.load_family(folder)
+    eta, chord = family["eta"][:], family["chord"][:]
+    for at in (float(eta[0]), 0.43, float(eta[-1])):
+        values = np.array([np.interp(at, eta, row) for row in chord])
+        middle = float(np.median(values)) + 1e-9
+        held = family.where(f"chord@{at!r} > {middle!r} and valid == true")
+        assert_array_equal(held, np.flatnonzero((values > middle) & family.valid))
+    for text, said in (
+        (
+            "thickness < 0.3",
+            r"'thickness' has to say where on the span, 0 to 1, such as 'thickness@0.7'",
+        ),
+        ("chord@1.2 > 3", r"'chord@1.2' has to say where"),
+        ("chord@0..7 > 3", r"'chord@0..7' has to say where"),
+        ("cord@0.7 > 3", r"there is no 'cord@0.7' of a variant"),
+        ("volume@0.7 > 3", r"there is no 'volume@0.7' of a variant"),
+    ):
+        with pytest.raises(FamilyError, match=said):
+            family.where(text)
+
+
 @pytest.mark.parametrize(("near", "runs"), [(16, 3), (2**20, 1)])
 def test_rows_are_read_in_runs_and_come_in_the_order_asked_for(monkeypatch, near, runs):
     """Variants that lie apart were read one by one, and numbers of 8 bytes each in a read."""

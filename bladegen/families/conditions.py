@@ -1,6 +1,7 @@
-"""Conditions on the variants of a family, as people write them: thickness < 0.3 and volume > 600.
+"""Conditions on the variants of a family, as people write them: t1 < 0.1 and volume > 600.
 
-A condition is ``NAME OP NUMBER``; several are joined by ``and``.  Nothing is evaluated but that.
+A condition is ``NAME OP NUMBER``; several are joined by ``and``.  ``chord@0.7`` is what an
+array over span has at 70 % of it.  Nothing is evaluated but that.
 """
 
 import operator
@@ -14,7 +15,7 @@ from bladegen.errors import FamilyError
 from bladegen.support.arguments import shown, suggestion
 from bladegen.support.arrays import Array, Mask
 
-__all__ = ["called", "factor_numbers", "matching", "named", "numbers"]
+__all__ = ["at_spans", "called", "factor_numbers", "matching", "named", "numbers"]
 
 CHANGES = ("thickness", "camber", "chord", "twist")
 OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
@@ -25,7 +26,7 @@ OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
     "==": operator.eq,
     "!=": operator.ne,
 }
-CONDITION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_]*)\s*(<=|>=|==|!=|<|>)\s*(\S+)\s*")
+CONDITION = re.compile(r"\s*([A-Za-z_][A-Za-z0-9_]*(?:@[0-9.]+)?)\s*(<=|>=|==|!=|<|>)\s*(\S+)\s*")
 AND = re.compile(r"\s+and\s+|\s*&&?\s*|\s*,\s*")
 
 
@@ -50,6 +51,35 @@ def numbers(table: Any, columns: dict[str, str]) -> dict[str, Array]:
         if pa.types.is_boolean(kind) or pa.types.is_integer(kind) or pa.types.is_floating(kind):
             values = table.column(column).combine_chunks().to_numpy(zero_copy_only=False)
             found[name] = np.asarray(values, dtype=np.float64)
+    return found
+
+
+def at_spans(family: Any, names: tuple[str, ...]) -> dict[str, Array]:
+    """Return what arrays over span of a loaded family hold at a place, by names like "chord@0.7".
+
+    Between two sections they are taken to be straight.
+
+    Raises
+    ------
+    FamilyError
+        If a name is that of an array over span without a place, or the place is beyond the blade.
+    """
+    found = {}
+    for name in names:
+        array, at, place = name.partition("@")
+        if array not in family or family[array].shape != (len(family), len(family["eta"][:])):
+            continue
+        eta = np.asarray(family["eta"][:])
+        where = _number(place) if at else None
+        if where is None or not eta[0] <= where <= eta[-1]:
+            raise FamilyError(
+                f"where: {name!r} has to say where on the span, {eta[0]:g} to {eta[-1]:g}, such as "
+                f"'{array}@0.7'"
+            )
+        after = int(np.clip(np.searchsorted(eta, where), 1, len(eta) - 1))
+        share = (where - eta[after - 1]) / (eta[after] - eta[after - 1])
+        values = np.asarray(family[array][:])[:, after - 1 : after + 1]
+        found[name] = values @ np.array([1.0 - share, share])
     return found
 
 

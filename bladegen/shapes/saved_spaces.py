@@ -87,7 +87,7 @@ def _places(points: Array) -> Array:
     near = slice(middle - 1, middle + 2)
     bend, slope, _ = np.polyfit(share[near] - share[middle], far[near] - far[middle], 2)
     edge = share[middle] - 0.5 * slope / bend if bend < 0.0 else share[middle]
-    return divided(share, 1.0 - float(edge))  # cot(pi (1 - x)) = -cot(pi x)
+    return divided(share, np.asarray(1.0 - edge))  # cot(pi (1 - x)) = -cot(pi x)
 
 
 def problem_of(arrays: dict[str, Array]) -> str | None:

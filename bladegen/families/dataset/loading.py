@@ -15,7 +15,7 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import FamilyError, MissingLibraryError
-from bladegen.families.conditions import matching, numbers
+from bladegen.families.conditions import at_spans, matching, named, numbers
 from bladegen.families.dataset.graphs import edges, surface, triangles
 from bladegen.families.dataset.reading import batches, place_of
 from bladegen.families.dataset.replanning import planned_again
@@ -142,11 +142,14 @@ class LoadedFamily:
         return numbers(self.table(), self.columns)
 
     def where(self, conditions: str) -> Indices:
-        """Return the places of the variants that fulfil conditions on `numbers`, in order.
+        """Return the places of the variants that fulfil conditions, in order.
+
+        On `numbers`, and on arrays over span at a place: "thickness@0.7 < 0.24".
 
         >>> family.where("volume > 600 and thickness_change < 1.02")  # doctest: +SKIP
         """
-        return np.flatnonzero(matching(self.numbers, conditions))
+        known = self.numbers | at_spans(self, named(conditions))
+        return np.flatnonzero(matching(known, conditions))
 
     def split(
         self,

@@ -14,7 +14,7 @@ from bladegen.blade.variants import section_measures
 from bladegen.curves.cubics import Cubics
 from strategies import few, naca
 
-COUNTS = (101, 401)
+COUNTS = (31, 51, 101, 401)
 ALONG = np.array([1.0, 0.0])
 
 

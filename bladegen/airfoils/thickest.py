@@ -20,7 +20,7 @@ from bladegen.support.arrays import Array, Indices, Mask
 __all__ = ["Places", "thickest", "thickest_again"]
 
 REACH = 12  # landmarks either side of the thickest pair, among which the place is sought
-FEWEST = 8 * REACH  # landmarks of a section that is measured so
+LEAST = 3  # of these, where a side has too few for more
 ITERATIONS = 10  # four are usual
 SETTLED = 1e-7  # of the way between landmarks; the step after is a thousand squares of it
 ROUNDING = 1e-12  # by which a place may pass the landmark that it lies at
@@ -76,9 +76,10 @@ def thickest(slopes: SplineSlopes, planes: Array, along: Array) -> Places:
     places = Places(
         np.empty(k), np.zeros(k, dtype=bool), best, n - 1 - best, np.zeros((2, k)), pair
     )
-    if n >= FEWEST:
-        best = np.minimum(np.maximum(best, REACH + 1), middle - REACH - 2)
-        upper, lower, off, alone = _nearest(planes, axes, best)
+    reach = min(REACH, (middle - 3) // 2)
+    if reach >= LEAST:
+        best = np.minimum(np.maximum(best, reach + 1), middle - reach - 2)
+        upper, lower, off, alone = _nearest(planes, axes, best, reach)
         near = Places(places.height, alone, upper, lower, off, pair)
         places = _followed(slopes, planes, axes, near)
     rows = np.flatnonzero(~places.settled)
@@ -123,14 +124,16 @@ def _followed(slopes: SplineSlopes, planes: Array, axes: Array, near: Places) ->
     return Places(height, settled, near.upper, near.lower, off.reshape(2, -1), near.pair)
 
 
-def _nearest(planes: Array, axes: Array, best: Indices) -> tuple[Indices, Indices, Array, Mask]:
+def _nearest(
+    planes: Array, axes: Array, best: Indices, reach: int
+) -> tuple[Indices, Indices, Array, Mask]:
     """Return the landmarks nearest to thickest places, by how many landmarks they are missed, and
     where no others may be as near.
 
     From the thickest pairs, by landmarks alone.
     """
     n, rows = planes.shape[2], np.arange(len(best))
-    window = best[:, None] + np.arange(-REACH - 1, REACH + 2)
+    window = best[:, None] + np.arange(-reach - 1, reach + 2)
     near = np.concatenate([window, n - 1 - window], axis=1)
     turned = axes @ planes[:, rows[:, None], near].swapaxes(0, 1)
     count = window.shape[1]
@@ -145,7 +148,7 @@ def _nearest(planes: Array, axes: Array, best: Indices) -> tuple[Indices, Indice
         passed = np.fmin(np.fmax(passed, 1 - count), count - 1)  # a number, whatever it was
         alone: Mask = ~np.any(rivals(heights, inner), axis=1)
     steps = np.rint(passed)
-    upper = best + inner - REACH
+    upper = best + inner - reach
     lower = np.minimum(np.maximum(n - 1 - upper + steps.astype(np.int64), n // 2 + 1), n - 2)
     return upper, lower, np.array([offset, passed - steps]), alone
 

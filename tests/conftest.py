@@ -22,9 +22,11 @@ from pathlib import Path
 import pytest
 import zygote
 from hypothesis import settings
+from threadpoolctl import threadpool_limits
 
 from bladegen.measures import foreign, foreign_reader
 
+threadpool_limits(int(os.environ["OMP_NUM_THREADS"]), "blas")  # a plugin has loaded NumPy before
 gc.set_threshold(50_000, 10, 10)
 settings.register_profile("steady", deadline=None, max_examples=15, derandomize=True)
 settings.register_profile("thorough", deadline=None, max_examples=100, derandomize=True)

@@ -43,8 +43,10 @@ def grid(blade: Blade, baseline: Blade | None = None) -> Any:  # noqa: ARG001
         views = ((0.5 * chord, 0.55 * chord), (0.6 * close[0], close[0]), (chord, close[1]))
         middle = float((edge - nose) @ frame[:, 1])
         for axis, (at, half), height in zip(row, views, (0.0, 0.0, middle), strict=True):
-            cells = _cells(axis, np.concatenate(quads), np.concatenate(values))
-            axis.set(xlim=(at - half, at + half), ylim=(height - 0.6 * half, height + 0.6 * half))
+            centre, size = np.array([at, height]), np.array([half, 0.6 * half])
+            cells = _cells(axis, np.concatenate(quads), np.concatenate(values), centre, size)
+            limits = np.stack([centre - size, centre + size])
+            axis.set(xlim=limits[:, 0], ylim=limits[:, 1])
             axis.set_aspect("equal")
             axis.set_ylabel("m")
         worst = min(
@@ -64,11 +66,19 @@ def _outward(outline: Array) -> Array:
     return area
 
 
-def _cells(axis: Any, quads: Array, values: Array) -> Any:
+def _cells(axis: Any, quads: Array, values: Array, centre: Array, size: Array) -> Any:
+    """Draw the cells that reach into a view: a file holds no others."""
     from matplotlib.collections import PolyCollection
 
+    low, high = quads.min(axis=1) - centre, quads.max(axis=1) - centre
+    seen = np.all((low < size) & (high > -size), axis=1)
     made = PolyCollection(
-        list(quads), array=values, cmap=SEQUENTIAL, clim=(0.0, 1.0), edgecolor=INK, linewidth=0.15
+        list(quads[seen]),
+        array=values[seen],
+        cmap=SEQUENTIAL,
+        clim=(0.0, 1.0),
+        edgecolor=INK,
+        linewidth=0.15,
     )
     axis.add_collection(made)
     return made

@@ -12,7 +12,7 @@ from bladegen.views.plots import blade_plots, layup_plot, path_plot, volume_plot
 
 @pytest.fixture(scope="module")
 def blade():
-    return bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=401)
+    return bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101)
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,8 @@ from bladegen.surface.grids.grid import Spacing, from_blade
 from bladegen.surface.volumes import volume_files
 from bladegen.surface.volumes.volume import Extrusion, volume_of
 
+pytestmark = pytest.mark.usefixtures("foreign_here")
+
 SPACING = Spacing(around=65, along=21, edge=8, leading_edge=4e-3, root=0.05)
 NODES = np.polynomial.legendre.leggauss(3)
 

@@ -22,6 +22,8 @@ from bladegen.measures import checks
 from bladegen.surface import mesh_files
 from bladegen.surface.tips import flat_tip, round_tip
 
+pytestmark = pytest.mark.usefixtures("foreign_here")
+
 
 @pytest.fixture(scope="module")
 def solid():

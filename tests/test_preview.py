@@ -13,6 +13,7 @@ from bladegen.views import preview
 from bladegen.views.rendering.offsets import offsets
 from bladegen.views.rendering.picture import _round_step
 from bladegen.views.rendering.scene import Field
+from bladegen.views.rendering.shadow import LIGHT, outline
 
 
 @pytest.fixture(scope="module")
@@ -124,3 +125,22 @@ def test_colours_show_what_moved(blade, tmp_path):
 )
 def test_rulers_have_round_steps(length, step):
     assert _round_step(length) == pytest.approx(step)
+
+
+def test_the_trailing_edge_is_one_unbroken_line_in_planform(blade, tmp_path):
+    path = tmp_path / "blade.png"
+    preview.picture(blade, path, size=(1200, 675))
+    grey = np.asarray(Image.open(path).convert("L")).astype(float)
+    strip = grey[365:464, 200:1100]  # the planform, above its ruler
+    last = len(strip) - 1 - np.argmax(strip[::-1] < 245, axis=0)
+    ends = [strip[row - 3 : row + 1, column].min() for column, row in enumerate(last)]
+    assert max(ends) < 200  # the surface beside it, seen between dashes, has 209
+
+
+def test_a_shadow_is_the_outline_moved_along_the_light():
+    turn = np.linspace(0.0, 2.0 * np.pi, 201)
+    loops = [np.column_stack([np.sin(turn), np.cos(turn), np.full(201, z)]) for z in (0.0, 5.0)]
+    edge = outline(np.stack(loops), -3.0)
+    assert_allclose(edge[:, 1].min(), -np.hypot(1.0, LIGHT[1]) + 3.0 * LIGHT[1], atol=1e-3)
+    assert_allclose(edge[:, 1].max(), np.hypot(1.0, LIGHT[1]) + 3.0 * LIGHT[1], atol=1e-3)
+    assert np.ptp(edge[:, 0]) == pytest.approx(5.0, abs=0.2)

@@ -20,6 +20,7 @@ from bladegen.measures.patches import Patch
 from bladegen.support.arrays import Array, ArrayLike
 from bladegen.views.comparison import surface_of
 from bladegen.views.plots import style
+from bladegen.views.rendering.drawing import add_lines
 from bladegen.views.rendering.picture import save_image
 from bladegen.views.rendering.renderer import image_of, quietly, require_renderer
 
@@ -35,6 +36,8 @@ SPANS, AROUND = 3001, 161
 COARSE = 9  # points each way, to measure a patch
 LONG = 4.0  # patches that are so much longer than wide have many rows along
 BANDS = 4
+EDGE, EDGE_WIDTH = "#8a929b", 2.5  # of trailing edges; pixels
+NEARER = 1.0  # m towards the eye, which changes no place in a view of parallel lines of sight
 SIZE = (2000, 2000)  # pixels
 ACROSS = 1.35  # of a band's largest width: the height of its view
 SIDES = (("suction side", 1.0), ("pressure side", -1.0))
@@ -42,10 +45,15 @@ SIDES = (("suction side", 1.0), ("pressure side", -1.0))
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """A grid of points (a, b, 3) [m] on a surface and its outward normals there."""
+    """A grid of points (a, b, 3) [m] on a surface and its outward normals there.
+
+    `edged` says whether its first and last columns are an edge of what is seen: they are drawn as
+    lines, since stripes there may be narrower than a pixel.
+    """
 
     points: Array
     normals: Array
+    edged: bool = False
 
     def angles(self, light: ArrayLike) -> Array:
         """Return the angles (a, b) [deg] between the normals and the light's direction (3,)."""
@@ -67,7 +75,8 @@ def sheets_of(source: Blade | Path) -> list[Sheet]:
         eta = np.union1d(np.linspace(0.0, 1.0, SPANS), _beside(source.eta))
         places = np.linspace(0.0, 0.5, AROUND)
         u = np.concatenate([places, 0.5 + places[1:]])
-        return [Sheet(source.sections(eta, u), fairness.normals(source, eta, u))]
+        points, normals = source.sections(eta, u), fairness.normals(source, eta, u)
+        return [Sheet(points, normals, edged=True)]
     patches = surface_of(source).surface.patches
     if not patches:
         raise RenderError(
@@ -122,8 +131,12 @@ def draw(sheets: Sequence[Sheet], title: str, path: Path) -> None:
                 plotter.subplot(row, column)
                 plotter.set_background(style.PAPER)
                 plotter.enable_anti_aliasing("ssaa")
-                for grid in shown:
+                for grid, sheet in zip(shown, sheets, strict=True):
                     _add(plotter, grid)
+                    if sheet.edged:
+                        ends = np.moveaxis(sheet.points[:, [0, -1]], 1, 0)
+                        nearer = np.array([way * NEARER, 0.0, 0.0])
+                        add_lines(plotter, (ends + nearer,), EDGE, EDGE_WIDTH)
                 within = points[(points[:, 2] >= low) & (points[:, 2] <= high)]
                 _look(plotter, within, (low, high), way)
                 text = f"{side}, z = {low:.4g} to {high:.4g} m"
@@ -139,6 +152,10 @@ def _grid(sheet: Sheet, light: ArrayLike, stripe: float) -> Any:
 
     grid = pv.StructuredGrid(*(np.ascontiguousarray(sheet.points[..., k]) for k in range(3)))
     grid["stripes"] = (sheet.angles(light) / stripe).ravel(order="F")
+    along, around = (np.diff(sheet.points, axis=k) for k in (0, 1))
+    faces = np.cross(along[:, :-1], around[:-1])
+    outward = np.sum(faces * sheet.normals[:-1, :-1]) > 0.0
+    grid.field_data["inside"] = ["back" if outward else "front"]
     return grid
 
 
@@ -157,6 +174,7 @@ def _add(plotter: Any, grid: Any) -> None:
         show_scalar_bar=False,
         reset_camera=False,
         render=False,
+        culling=grid.field_data["inside"][0],  # else it peeps out behind the trailing edge
     )
 
 

@@ -14,7 +14,7 @@ from bladegen.surface.regions import REGIONS
 from bladegen.surface.vtk_files import save
 from bladegen.views.plots.style import INK
 from bladegen.views.rendering.blade_scene import scene_of, thinning
-from bladegen.views.rendering.cameras import VIEWS, perspective
+from bladegen.views.rendering.cameras import VIEWS, View, perspective
 from bladegen.views.rendering.drawing import (
     add_colour_bar,
     add_lines,
@@ -27,6 +27,7 @@ from bladegen.views.rendering.drawing import (
 )
 from bladegen.views.rendering.renderer import image_of, quietly, require_renderer
 from bladegen.views.rendering.scene import Field, Scene
+from bladegen.views.rendering.shadow import add_shadow
 
 __all__ = ["gallery", "picture", "save_image", "write_vtp"]
 
@@ -34,7 +35,13 @@ SIZE = (1920, 1080)
 VIEW, STRIP = 0.54, 0.23  # shares of a figure's height
 FAR = 1000.0  # half heights of a small picture: what shines then does so alike in all
 SMALL = 101  # landmarks of small pictures, about
+SECTIONS = 240  # of the shadow and the trailing edge
+EDGE = "#5f6b78"  # of the trailing edge, whose base is narrower than a pixel
+EDGE_WIDTH = 1.5  # pixels
+NARROW = 0.002  # of the length, a base of three pixels
+ROUND = 0.95  # relative thickness of sections without an edge
 OBLIQUE = VIEWS["oblique"]
+LYING = View((0.72, 0.42, -0.62), (0.35, -1.0, 0.0), parallel=False)  # fills a picture of 16 : 5
 
 
 def picture(
@@ -174,9 +181,12 @@ def _figure(blade: Blade, scene: Scene, field: Field | None, size: tuple[int, in
         border=False,
     )
     shown = shaded(scene.surface, scene.fields)
+    sections = blade.sections(np.linspace(0.0, 1.0, SECTIONS))
+    edge = _thin_edge(blade, sections)
     plotter.subplot(0, 0)
-    actor = _add_blade(plotter, scene, shown, field)
-    look(plotter, scene.surface.vertices, OBLIQUE, size[0] / (VIEW * size[1]))
+    actor = _add_blade(plotter, scene, shown, field, edge)
+    look(plotter, scene.surface.vertices, LYING, size[0] / (VIEW * size[1]))
+    add_shadow(plotter, sections)
     marked = "; stations of the definition marked"
     place = 24, int(VIEW * size[1]) - 88
     add_words(plotter, f"{scene.title}\n{scene.caption}{marked}", place, 13)
@@ -187,7 +197,7 @@ def _figure(blade: Blade, scene: Scene, field: Field | None, size: tuple[int, in
         (("planform, suction side", "planform"), ("edgewise, trailing edge", "side")), start=1
     ):
         plotter.subplot(row, 0)
-        _add_blade(plotter, scene, shown, field)
+        _add_blade(plotter, scene, shown, field, edge)
         _strip_view(plotter, blade, view, size)
         plotter.add_text(
             title, position=(int(0.8 * size[0]), int(STRIP * size[1]) - 48), font_size=10, color=INK
@@ -195,10 +205,23 @@ def _figure(blade: Blade, scene: Scene, field: Field | None, size: tuple[int, in
     return plotter
 
 
-def _add_blade(plotter: Any, scene: Scene, shown: Any, field: Field | None) -> Any:
-    """Add the surface, and the definition's stations as lines on it."""
+def _thin_edge(blade: Blade, sections: Array) -> Array:
+    """Return lines (3, m, 3) over the trailing edge, from where its base is narrow to the tip."""
+    ends = sections[:, [0, -1]]
+    wide = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=-1) > NARROW * blade.length
+    wide |= blade.relative_thickness(np.linspace(0.0, 1.0, len(sections))) > ROUND
+    first = min(int(np.flatnonzero(wide).max(initial=-1)) + 1, len(sections) - 2)
+    lines = np.stack([ends[:, 0], ends.mean(axis=1), ends[:, 1]])
+    return lines[:, first:]
+
+
+def _add_blade(
+    plotter: Any, scene: Scene, shown: Any, field: Field | None, trailing_edge: Array
+) -> Any:
+    """Add the surface; on it its trailing edge and the definition's stations as lines."""
     dress(plotter)
     actor = add_surface(plotter, shown, field)
+    add_lines(plotter, (trailing_edge,), EDGE, EDGE_WIDTH)
     for layer in scene.layers:
         if layer.name == "stations":
             add_lines(plotter, layer.lines, layer.colour if field is None else INK, layer.width)

@@ -2,14 +2,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
+from numpy.testing import assert_allclose
 from PIL import Image
 from typer.testing import CliRunner
 
 import bladegen as bg
+from bladegen.cad.rotor import rotor_of, write_glb
 from bladegen.cli import commands
 from bladegen.cli.options.perturbing import Changes
 from bladegen.cli.view import What
 from bladegen.errors import BladegenError
+from bladegen.surface.mesh import from_blade
 from bladegen.views import preview, sweep
 from bladegen.views.plots.blade_plots import PLOTS
 from bladegen.views.plots.figures import figure
@@ -57,6 +61,29 @@ def test_preview_opens_a_window_of_a_perturbed_blade(monkeypatch):
     assert turned.field("distance").values.max() > 10
 
 
+def test_preview_shows_the_rotor_that_build_writes(tmp_path, monkeypatch):
+    png, html = tmp_path / "a.png", tmp_path / "a.html"
+    asked = ["preview", "nrel5mw", "--rotor", "--hub-radius", "2m", "--landmarks", 101]
+    result = run(*asked, "--screenshot", png, "--html", html)
+    assert result.exit_code == 0, result.output
+    assert result.output.split() == ["wrote", str(png), "wrote", str(html)]
+    shown = []
+    monkeypatch.setattr(preview, "require_window", lambda: None)
+    monkeypatch.setattr(preview, "show", lambda scene, **options: shown.append(scene))
+    assert run(*asked, "--mirror").exit_code == 0
+    (scene,) = shown
+    assert scene.caption.startswith("3 blades, 126.9 m across, hub radius 2 m, precone 2.5 deg")
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=101).mirror_image()
+    write_glb(rotor_of(blade, hub_radius=2.0), from_blade(blade), tmp_path / "rotor.glb")
+    built = np.array(trimesh.load(tmp_path / "rotor.glb").bounds)  # y up in the file
+    bounds = [scene.surface.vertices.min(axis=0), scene.surface.vertices.max(axis=0)]
+    assert_allclose(
+        np.sort(np.abs(bounds), axis=None), np.sort(np.abs(built), axis=None), atol=0.01
+    )
+    upright = np.asarray(Image.open(png).convert("L"))[200:900, 60:820] < 245
+    assert 0.01 < upright.mean() < 0.2
+
+
 def test_preview_writes_sweeps(small, tmp_path):
     gif, film = tmp_path / "a.gif", tmp_path / "a.mp4"
     result = run(
@@ -75,6 +102,9 @@ def test_preview_writes_sweeps(small, tmp_path):
         (["preview"], "preview: name a blade"),
         (["preview", "nrel5mw", "--sweep", "t1=0:1"], "sweep: needs --gif or --mp4"),
         (["preview", "nrel5mw", "--gif", "a.gif", "--sweep", "t1"], "sweep: got 't1', must be"),
+        (["preview", "nrel5mw", "--hub-radius", "2m"], "hub-radius, precone: are of the rotor"),
+        (["preview", "nrel5mw", "--rotor", "--colour", "curvature"], "rotor: is shown plain"),
+        (["preview", "nrel5mw", "--rotor", "--gif", "a.gif"], "rotor: is shown plain"),
         (["preview", "nrel5mw", "--compare", "a", "b"], "compare: takes two"),
         (["preview", "nrel5mw", "--screenshot", "a.png", "--colour", "distance"], "a baseline"),
         (

@@ -24,7 +24,7 @@ from bladegen.support.arrays import Array
 from bladegen.surface.gltf import Standing, glb
 from bladegen.surface.mesh import TriangleMesh
 
-__all__ = ["ASSEMBLED", "KINDS", "Rotor", "rotor_of", "write_glb", "write_step"]
+__all__ = ["ASSEMBLED", "KINDS", "Rotor", "rotor_of", "standing", "write_glb", "write_step"]
 
 NOSE, BACK = 1.3, 0.9  # lengths of the spinner ahead of and behind the blades, in its radii
 COVER = 1.02  # the spinner's radius over what hides the root sections
@@ -203,8 +203,8 @@ def mirrored_part(part: Part) -> Part:
     return Part(part.name, made.Shape(), pieces)
 
 
-def write_glb(rotor: Rotor, mesh: TriangleMesh, path: Path) -> None:
-    """Write a rotor as GLB: the same parts under the same names, metres."""
+def standing(rotor: Rotor, mesh: TriangleMesh) -> list[Standing]:
+    """Return the blade's mesh as blade 1, blade 2, ..., and the spinner, each in its place."""
     blade = mesh
     if rotor.mirrored:
         vertices = mesh.vertices * np.array([1.0, -1.0, 1.0])
@@ -214,8 +214,12 @@ def write_glb(rotor: Rotor, mesh: TriangleMesh, path: Path) -> None:
         for number, (rotation, shift) in enumerate(zip(*rotor.placements(), strict=True), start=1)
     ]
     hub = triangulated(spinner(rotor.spinner_radius), DEFLECTION)
-    parts.append(Standing("spinner", hub, np.eye(3), np.zeros(3)))
-    path.write_bytes(glb("rotor", parts))
+    return [*parts, Standing("spinner", hub, np.eye(3), np.zeros(3))]
+
+
+def write_glb(rotor: Rotor, mesh: TriangleMesh, path: Path) -> None:
+    """Write a rotor as GLB: the same parts under the same names, metres."""
+    path.write_bytes(glb("rotor", standing(rotor, mesh)))
 
 
 def spinner(radius: float, angle: float = 2.0 * np.pi) -> Any:

@@ -20,6 +20,7 @@ from bladegen.cli.options.common import (
 from bladegen.cli.options.groups import grouped
 from bladegen.cli.options.perturbing import NO_CHANGES, Changes
 from bladegen.cli.options.producing import PRODUCING, Producing
+from bladegen.cli.options.rotors import HubRadius, Precone, require_rotor, rotor_given
 from bladegen.cli.terminal import print_summary, progress_bar, remark
 from bladegen.errors import BladegenError
 
@@ -72,17 +73,8 @@ def build(
         ),
     ] = RotorKind.assembly,
     mirror: Mirror = False,
-    hub_radius: Annotated[
-        str | None,
-        typer.Option(metavar="LENGTH", help="Of the rotor, instead of the definition's; 2m."),
-    ] = None,
-    precone: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ANGLE",
-            help="Of the rotor in degrees, tips upwind, instead of the definition's.",
-        ),
-    ] = None,
+    hub_radius: HubRadius = None,
+    precone: Precone = None,
 ) -> None:
     """Build a blade: a STEP solid, meshes, grids, a picture and a report."""
     suffixes = suffixes_of(formats)
@@ -91,20 +83,9 @@ def build(
     made = made.mirror_image() if mirror else made
     whole = None
     rotor = rotor or rotor_as is not RotorKind.assembly
-    if not rotor and (hub_radius or precone):
-        raise BladegenError("hub-radius, precone: are of the rotor; add --rotor, or leave them out")
+    require_rotor(rotor, hub_radius, precone)
     if rotor:
-        from bladegen.cad.rotor import rotor_of
-        from bladegen.cli.options.parsing import metres, radians
-
-        whole = rotor_of(
-            made,
-            hub_radius=None
-            if hub_radius is None
-            else metres(hub_radius, "hub-radius", example="2m"),
-            cone=None if precone is None else radians(precone, "precone"),
-            made_as=rotor_as.value,
-        )
+        whole = rotor_given(made, hub_radius, precone, rotor_as.value)
     suffixes = _with(suffixes, {CURVES: curves, STRUCTURE: structure})
     _say_what_is_idle(producing, suffixes, rotor=rotor)
     _build(made, output, suffixes, options, whole)

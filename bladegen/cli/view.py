@@ -1,6 +1,7 @@
 """`bladegen preview` and `bladegen plot`: blades to look at."""
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import asdict, replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -8,7 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.check import blade_of
+from bladegen.cli.analysis.looking import compare as shown_apart
+from bladegen.cli.analysis.looking import sweep_through
 from bladegen.cli.options.common import (
     LANDMARKS,
     MAKING,
@@ -20,7 +22,8 @@ from bladegen.cli.options.common import (
 )
 from bladegen.cli.options.groups import COMMAND, grouped
 from bladegen.cli.options.perturbing import NO_CHANGES, Changes
-from bladegen.cli.terminal import progress_bar, variants_bar
+from bladegen.cli.options.rotors import HubRadius, Precone, require_rotor, rotor_given
+from bladegen.cli.terminal import progress_bar
 from bladegen.errors import BladegenError
 
 __all__ = ["plot", "preview"]
@@ -110,21 +113,39 @@ def preview(
     landmarks: Landmarks = LANDMARKS,
     making: Making = MAKING,
     mirror: Mirror = False,
+    rotor: Annotated[
+        bool, typer.Option("--rotor", help="The whole rotor, blades and spinner, as build has it.")
+    ] = False,
+    hub_radius: HubRadius = None,
+    precone: Precone = None,
 ) -> None:
     """Look at a blade: in a window, or as a picture, a page, a GIF or a film."""
     if compare is not None:
-        if blade is not None or gif is not None or mp4 is not None or changes.asked or mirror:
+        if (
+            blade is not None
+            or gif is not None
+            or mp4 is not None
+            or changes.asked
+            or mirror
+            or rotor
+        ):
             raise BladegenError(
                 "compare: takes two files or blades, --screenshot or --html, and nothing else"
             )
-        _compare(*compare, screenshot, html, replace(MAKING, airfoils=making.airfoils))
+        shown_apart(*compare, screenshot, html, replace(MAKING, airfoils=making.airfoils))
         return
     if blade is None:
         raise BladegenError("preview: name a blade (`bladegen list` shows the bundled ones)")
     shown, baseline = _shown(making.blade(blade, landmarks), changes, mirror)
+    if rotor:
+        if gif or mp4 or sweep or colour not in (None, Colour.plain):
+            raise BladegenError("rotor: is shown plain, by --screenshot, --html or in a window")
+        _show_rotor(shown, rotor_given(shown, hub_radius, precone), screenshot, html)
+        return
+    require_rotor(rotor, hub_radius, precone)
     colouring = colour or (Colour.plain if baseline is None else Colour.distance)
     if gif is not None or mp4 is not None:
-        _sweep(shown, changes.shape_space(), sweep or [], frames, gif, mp4)
+        sweep_through(shown, changes.shape_space(), sweep or [], frames, gif, mp4)
     elif sweep is not None:
         raise BladegenError("sweep: needs --gif or --mp4")
     _show(shown, baseline, colouring.value, screenshot, html, window=gif is None and mp4 is None)
@@ -149,26 +170,61 @@ def _show(
     window: bool,
 ) -> None:
     """Write the picture and the page that are asked for, or open a window if nothing is."""
-    from bladegen.exports.marks import marked
     from bladegen.views import page
     from bladegen.views import preview as view
     from bladegen.views.rendering.blade_scene import scene_of
 
-    made = _made(blade)
+    def draw(path: Path) -> None:
+        view.picture(blade, path, baseline=baseline, colour=colour)
+
+    def scene(**how: int) -> Any:
+        return scene_of(blade, baseline, **how)
+
+    _write(_made(blade), draw, partial(scene, landmarks=page.LANDMARKS), colour, screenshot, html)
+    if window and screenshot is None and html is None:
+        view.require_window()
+        view.show(scene(), colour=colour)
+
+
+def _show_rotor(blade: Any, rotor: Any, screenshot: Path | None, html: Path | None) -> None:
+    """Write or open the picture of a rotor."""
+    from bladegen.views import preview as view
+    from bladegen.views.rendering.rotor_scene import rotor_picture, rotor_scene
+
+    settings = {f"rotor_{key}": f"{value}" for key, value in asdict(rotor).items()}
+    found = rotor_scene(blade, rotor)
+
+    def draw(path: Path) -> None:
+        rotor_picture(found, path)
+
+    _write(_made(blade, **settings), draw, lambda: found, "plain", screenshot, html)
+    if screenshot is None and html is None:
+        view.require_window()
+        view.show(found, colour="plain")
+
+
+def _write(
+    made: Any,
+    draw: Callable[[Path], None],
+    scene: Callable[[], Any],
+    colour: str,
+    screenshot: Path | None,
+    html: Path | None,
+) -> None:
+    """Write the picture and the page that are asked for."""
+    from bladegen.exports.marks import marked
+    from bladegen.views.page import write_page
+
     if screenshot is not None:
         with progress_bar() as progress, marked(screenshot, made) as temporary:
             progress("rendering")
-            view.picture(blade, temporary, baseline=baseline, colour=colour)
+            draw(temporary)
         typer.echo(f"wrote {screenshot}")
     if html is not None:
         with progress_bar() as progress, marked(html, made) as temporary:
             progress("making the page")
-            found = scene_of(blade, baseline, landmarks=page.LANDMARKS)
-            page.write_page(found, temporary, colour=colour)
+            write_page(scene(), temporary, colour=colour)
         typer.echo(f"wrote {html}")
-    if window and screenshot is None and html is None:
-        view.require_window()
-        view.show(scene_of(blade, baseline), colour=colour)
 
 
 def _made(what: Any, **settings: str) -> Any:
@@ -176,64 +232,6 @@ def _made(what: Any, **settings: str) -> Any:
     from bladegen.exports.provenance import made_from
 
     return made_from(what, settings, COMMAND.get())
-
-
-def _sweep(
-    blade: Any, space: Any, texts: list[str], count: int, gif: Path | None, mp4: Path | None
-) -> None:
-    """Render a sweep once and write it as asked."""
-    from bladegen.cli.options.parsing import factor_bounds
-    from bladegen.exports.marks import marked
-    from bladegen.views import sweep
-    from bladegen.views.tables import megabytes
-
-    motion = sweep.Motion(blade, space, factor_bounds(texts, "sweep"), count)
-    if mp4 is not None:
-        sweep.require_encoder(mp4)
-    with variants_bar(count, "frames") as progress:
-        images = list(sweep.frames(motion, progress=progress))
-    made = _made(blade, sweep=" ".join(texts), frames=str(count))
-    film = partial(sweep.write_mp4, about=made.text)
-    for path, write in ((gif, sweep.write_gif), (mp4, film)):
-        if path is not None:
-            with marked(path, made) as temporary:
-                write(images, temporary)
-            typer.echo(f"wrote {path}: {count} frames, {megabytes(path.stat().st_size)}")
-
-
-def _compare(
-    one: str, other: str, screenshot: Path | None, html: Path | None, plain: Making
-) -> None:
-    """Show a surface coloured by its distance from another one."""
-    from bladegen.exports.marks import marked
-    from bladegen.exports.provenance import compared_of
-    from bladegen.views import comparison
-    from bladegen.views import preview as view
-    from bladegen.views.page import write_page
-
-    title = f"{one} against {other}"
-    with progress_bar() as progress:
-        progress("reading")
-        things = [blade_of(name, plain) or Path(name) for name in (one, other)]
-        surfaces = [comparison.surface_of(thing) for thing in things]
-        made = compared_of(things[0], things[1], command=COMMAND.get())
-        progress("measuring distances")
-        found = comparison.compared(*surfaces)
-        progress("drawing")
-        if screenshot is not None:
-            with marked(screenshot, made) as temporary:
-                comparison.draw(found, title, temporary)
-        if html is not None:
-            with marked(html, made) as temporary:
-                write_page(comparison.scene(found, title), temporary, colour="distance")
-    for note in found.notes:
-        typer.echo(f"note: {note}")
-    for path in (screenshot, html):
-        if path is not None:
-            typer.echo(f"wrote {path}")
-    if screenshot is None and html is None:
-        view.require_window()
-        view.show(comparison.scene(found, title), colour="distance")
 
 
 @grouped

@@ -251,6 +251,30 @@ def test_a_slider_moves_the_picture_and_the_numbers(opened):
     assert label.startswith("Section at 50 % of the span")
 
 
+def test_a_curve_over_span_is_dragged_moved_by_keys_and_undone(opened):
+    tab = opened()
+    before = count(tab)
+    handle = tab.get_by_role("slider", name="Twist at 80 % of the span")
+    box = handle.bounding_box()
+    middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    tab.mouse.move(*middle)
+    tab.mouse.down()
+    tab.mouse.move(middle[0], middle[1] - 6, steps=3)
+    tab.mouse.move(middle[0], middle[1] - 12, steps=3)
+    tab.mouse.up()
+    drawn(tab, before + 1)
+    tab.wait_for_function("() => location.search.includes('over.twist=0,0,0,')")
+    dragged = tab.evaluate("() => location.search")
+    handle.focus()
+    tab.keyboard.press("ArrowUp")
+    tab.wait_for_function("then => location.search !== then", arg=dragged)
+    assert tab.evaluate("() => document.activeElement.dataset.curve") == "twist"
+    tab.keyboard.press("Control+z")
+    tab.wait_for_function("then => location.search === then", arg=dragged)
+    tab.keyboard.press("Control+z")  # all of the drag is one step
+    holds(tab, **{"over.twist": None})
+
+
 def known(tab, name):
     """Return a row of the figures beside the baseline's, once they are those of the state."""
     tab.wait_for_selector(".figures:not(.stale) table")

@@ -227,6 +227,7 @@ class Blade:
         chord_scale: float = 1.0,
         twist_scale: float = 1.0,
         prebend_scale: float = 1.0,
+        prebend: Distribution | None = None,
         window: Window | None = None,
         chord_line: str = KEPT,
         allow_extrapolation: bool = False,
@@ -244,6 +245,8 @@ class Blade:
         thickness, camber, chord, twist, chord_scale, twist_scale, prebend_scale : float
             See `affine_change.AffineChange`; twist in radians.  The first four may be a
             `Distribution` over span.
+        prebend : Distribution, optional
+            What is added to the prebend [m].
         window : Window, optional
             Where shape, thickness, camber, chord and twist change; by default not on round
             roots, and fully from the first lifting airfoil on.
@@ -266,7 +269,7 @@ class Blade:
         """
         space, t = together(space, t)
         scales = chord_scale, twist_scale, prebend_scale
-        change = change_of(thickness, camber, chord, twist, *scales)
+        change = change_of(thickness, camber, chord, twist, *scales, prebend=prebend)
         how = Where(window=window, chord_line=chord_line, allow_extrapolation=True)
         variant = self.untested(space, t, change, name=name, **how)
         said = variant.findings

@@ -120,14 +120,15 @@ class Perturbation:
         )
 
 
-def change_of(*amounts: float | Distribution) -> AffineChange:
+def change_of(*amounts: float | Distribution, prebend: Distribution | None = None) -> AffineChange:
     """Return affine parameters in the order of `AffineChange`, or say which is no number."""
 
     def known(key: str, value: float | Distribution) -> float | Distribution:
         over = isinstance(value, Distribution)
         return value if over else amount(value, key, PerturbationError)
 
-    return AffineChange(**{key: known(key, a) for key, a in zip(RANGES, amounts, strict=True)})
+    plain: Any = {key: known(key, a) for key, a in zip(RANGES, amounts, strict=True)}
+    return AffineChange(**plain, prebend=prebend)
 
 
 def together(space: Any, t: Any) -> tuple[ShapeSpace | None, Coordinates]:

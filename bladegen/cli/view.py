@@ -177,8 +177,7 @@ def _show(
     def draw(path: Path) -> None:
         view.picture(blade, path, baseline=baseline, colour=colour)
 
-    def scene(**how: int) -> Any:
-        return scene_of(blade, baseline, **how)
+    scene = partial(scene_of, blade, baseline)
 
     _write(_made(blade), draw, partial(scene, landmarks=page.LANDMARKS), colour, screenshot, html)
     if window and screenshot is None and html is None:

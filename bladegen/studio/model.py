@@ -15,9 +15,11 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import AffineChange, Window
 from bladegen.blade.variants.batch import Batch, SectionBatch
 from bladegen.blade.variants.verdicts import THINNEST
+from bladegen.definition.distribution import Distribution
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.checks.verdicts import Measured, checks
 from bladegen.studio.choices.difference import left
+from bladegen.studio.choices.drawn import KNOTS
 from bladegen.studio.controls import AFFINE
 from bladegen.studio.scene import Check, Curves, Scene, flattened
 from bladegen.studio.state import State
@@ -30,6 +32,7 @@ __all__ = ["Baseline", "changes"]
 PERCENTS = np.linspace(0.0, 1.0, 101)  # where a section can be looked at
 BENDING = 40  # spans that follow the blade's bends
 DRAWS = 500
+UNMOVED = 1e-3  # of a full change: a knot where the window lets nothing change
 
 
 def changes(state: State) -> dict[str, Any]:
@@ -38,9 +41,18 @@ def changes(state: State) -> dict[str, Any]:
     if any(state.t):
         asked["t"] = list(state.t)
     asked |= {control.keyword: control.amount(state) for control in AFFINE if control.moved(state)}
+    asked |= _over_span(state)
     if state.window is not None:
         asked["window"] = Window(*state.window)
     return asked
+
+
+def _over_span(state: State) -> dict[str, Distribution]:
+    """Return what was dragged over span, by keyword, twist in radians."""
+    found = state.over_span
+    if "twist" in found:
+        found["twist"] = replace(found["twist"], values=np.radians(found["twist"].values))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +97,8 @@ class Baseline:
 
     def _asked(self, state: State) -> tuple[Array, AffineChange]:
         amounts: Any = {control.keyword: control.amount(state) for control in AFFINE}
+        for name, over in _over_span(state).items():  # what the batch has at its own spans
+            amounts[name] = over if name == "prebend" else over(self.eta)[None]
         return np.array([state.t]), AffineChange(**amounts)
 
     def at(self, span: float) -> Scene:
@@ -115,7 +129,7 @@ class Baseline:
             batch.chord[0],
             np.degrees(batch.twist[0]),
             100.0 * batch.relative_thickness[0],
-            state.prebend * self.blade.axis(self.eta)[:, 0],
+            self._prebend(state),
         )
         return Scene(
             state,
@@ -125,6 +139,29 @@ class Baseline:
             curves,
             self._checks(state, batch, deviation),
         )
+
+    def _prebend(self, state: State) -> Array:
+        added = state.over_span.get("prebend")
+        own: Array = state.prebend * self.blade.axis(self.eta)[:, 0]
+        return own if added is None else own + added(self.eta)
+
+    def dragged(self, state: State, name: str, knot: int, value: float) -> State:
+        """Return a state whose curve passes through a value at a knot, as far as it may go.
+
+        Chord, twist and prebend there are linear in what is dragged, by the window's weight.
+        """
+        at = np.array([KNOTS[knot]])
+        weight = float(self.within(state)(at)[0])
+        if name == "prebend":
+            wanted = value - state.prebend * float(self.blade.axis(at)[0, 0])
+        elif weight < UNMOVED:
+            return state
+        elif name == "twist":
+            wanted = (value - float(np.degrees(self.blade.twist(at)[0]))) / weight - state.twist
+        else:
+            share = (value / float(self.blade.chord(at)[0]) - 1.0) / weight + 1.0
+            wanted = share / (state.chord * (2.0 - state.camber))
+        return state.dragged(name, knot, wanted)
 
     def drawn(self, state: State, rng: np.random.Generator, reach: float = 0.35) -> State:
         """Return a random variant that is sound, at the same window and section."""

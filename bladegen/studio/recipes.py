@@ -28,10 +28,14 @@ def shell(state: State, entry: Entry, stem: str) -> str:
         # a value that starts with a minus would be taken for an option
         words.append("--pga=" + ",".join(f"{value:g}" for value in state.t))
         words += ["--allow-extrapolation", "--allow-odd"]  # the checks have shown it
+    over = state.over_span
     for control in AFFINE:
-        if control.moved(state):
+        if control.moved(state) and control.keyword not in over:
             value = f"{getattr(state, control.name):g}"
             words += [f"{control.option}={value}"] if control.low < 0 else [control.option, value]
+    for name, curve in over.items():
+        knots = zip(curve.grid, curve.values, strict=True)
+        words.append(f"--over={name}=" + ",".join(f"{value:.10g}@{at:g}" for at, value in knots))
     if state.changed:
         if state.window is not None:
             words.append("--window={:g},{:g}".format(*state.window))
@@ -45,7 +49,10 @@ def python(state: State, entry: Entry, stem: str) -> str:
     loft = "" if state.loft.path == DEFAULT else f", path={state.loft.path!r}"
     if state.loft.fair:
         loft += ", fair_planform=bg.PlanformFairing()"
-    turned = any(control.unit == "deg" and control.moved(state) for control in AFFINE)
+    over = state.over_span
+    turned = "twist" in over or any(
+        control.unit == "deg" and control.moved(state) for control in AFFINE
+    )
     lines = [
         *(["from math import radians", ""] if turned else []),
         "import bladegen as bg",
@@ -57,9 +64,13 @@ def python(state: State, entry: Entry, stem: str) -> str:
         if any(state.t):
             asked += ["bg.ShapeSpace.bundled()", repr(list(state.t))]
             asked += ["allow_extrapolation=True", "allow_odd=True"]  # the checks have shown it
+        for name, curve in over.items():
+            spans, values = f"{curve.grid.tolist()}", f"{curve.values.tolist()}"
+            values = f"[radians(x) for x in {values}]" if name == "twist" else values
+            asked.append(f"{name}=bg.Distribution({spans}, {values})")
         for control in AFFINE:
             value = repr(getattr(state, control.name))
-            if control.moved(state):
+            if control.moved(state) and control.keyword not in over:
                 said = f"radians({value})" if control.unit == "deg" else value
                 asked.append(f"{control.keyword}={said}")
         if state.window is not None:

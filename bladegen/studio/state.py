@@ -12,10 +12,12 @@ from urllib.parse import parse_qs, urlencode
 
 import numpy as np
 
+from bladegen.definition.distribution import Distribution
 from bladegen.errors import StudioError
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.studio.choices.delivery import USUAL, Delivery
 from bladegen.studio.choices.difference import known_part
+from bladegen.studio.choices.drawn import CURVES, UNDRAWN, Drawn
 from bladegen.studio.choices.loft import PLAIN, Loft
 from bladegen.studio.controls import AFFINE, CONTROLS, END, START, Control, controls
 
@@ -48,6 +50,8 @@ class State:
         Which part of the difference from the baseline is coloured, of `difference.PARTS`.
     files : Delivery
         How files are written.
+    curves : Drawn
+        How chord, twist and prebend were dragged over span.
     beside : str
         Another blade's key in the library, shown as it is beside this one; "" for none.
     """
@@ -65,11 +69,24 @@ class State:
     off: str = "all"
     files: Delivery = USUAL
     beside: str = ""
+    curves: Drawn = UNDRAWN
 
     @property
     def changed(self) -> bool:
         """Whether the blade is another than its baseline."""
-        return any(self.t) or any(control.moved(self) for control in AFFINE)
+        moved = any(control.moved(self) for control in AFFINE)
+        return any(self.t) or moved or self.curves != UNDRAWN
+
+    def dragged(self, name: str, knot: int, value: float) -> "State":
+        """Return the state with a curve over span dragged at one of its knots."""
+        return replace(self, curves=self.curves.having(name, knot, value))
+
+    @property
+    def over_span(self) -> dict[str, Distribution]:
+        """What was dragged, together with the sliders of chord and twist; twist in degrees."""
+        bases = {"chord": self.chord, "twist": self.twist, "prebend": 0.0}
+        found = {name: self.curves.over_span(name, base) for name, base in bases.items()}
+        return {name: over for name, over in found.items() if over is not None}
 
     def value(self, name: str) -> float:
         """Return the number of the control `name` that is no end of the window."""
@@ -145,6 +162,9 @@ def to_query(state: State) -> str:
         words["unit"] = state.files.unit
     if state.files.tolerance != plain.files.tolerance:
         words["tolerance"] = f"{state.files.tolerance:g}"
+    for name in CURVES:
+        if getattr(state.curves, name):
+            words[f"over.{name}"] = ",".join(f"{x:g}" for x in state.curves.values(name))
     if state.beside:
         words["beside"] = state.beside
     for entry in fields(State):
@@ -168,6 +188,10 @@ def _tolerance(state: State, text: str) -> State:
     return replace(state, files=replace(state.files, tolerance=value))
 
 
+def _over(name: str) -> Callable[[State, str], State]:
+    return lambda state, text: replace(state, curves=Drawn.parsed(name, text, state.curves))
+
+
 CHOICES: dict[str, Callable[[State, str], State]] = {
     "path": lambda state, text: replace(state, loft=replace(state.loft, path=text)),
     "fair": _fair,
@@ -175,6 +199,7 @@ CHOICES: dict[str, Callable[[State, str], State]] = {
     "unit": lambda state, text: replace(state, files=replace(state.files, unit=text)),
     "tolerance": _tolerance,
     "beside": lambda state, text: replace(state, beside=text),
+    **{f"over.{name}": _over(name) for name in CURVES},
 }
 KEYS = ("blade", "t", "window", *(control.name for control in AFFINE), "at", *CHOICES)  # of links
 

@@ -70,6 +70,8 @@ class AffineChange:
         A turn of the sections [rad], leading edge upwind positive; 0 is the identity.
     chord_scale, twist_scale, prebend_scale : float
         Factors of the whole distributions; 1 is the identity.
+    prebend : Distribution, optional
+        What is added to the prebend, after its factor [m], along the whole span.
     """
 
     thickness: Amount = 1.0
@@ -79,8 +81,14 @@ class AffineChange:
     chord_scale: Amount = 1.0
     twist_scale: Amount = 1.0
     prebend_scale: Amount = 1.0
+    prebend: Distribution | None = None
 
     def __post_init__(self) -> None:
+        if not (self.prebend is None or isinstance(self.prebend, Distribution)):
+            raise PerturbationError(
+                f"prebend: got {self.prebend!r}, must be a bladegen.Distribution of what is added "
+                "over span [m]; prebend_scale is a factor"
+            )
         for name, (low, high) in RANGES.items():
             given = getattr(self, name)
             if isinstance(given, Distribution) and name in WHOLE:
@@ -107,12 +115,14 @@ class AffineChange:
 
     @property
     def over_span(self) -> tuple[Distribution, ...]:
-        """The parameters that are distributions."""
-        return tuple(a for a in vars(self).values() if isinstance(a, Distribution))
+        """The parameters of the window that are distributions."""
+        own = (getattr(self, name) for name in RANGES)
+        return tuple(amount for amount in own if isinstance(amount, Distribution))
 
     def at(self, eta: Array) -> "AffineChange":
         """Return the parameters at span fractions (k,)."""
-        own = {key: a(eta) for key, a in vars(self).items() if isinstance(a, Distribution)}
+        amounts = {key: getattr(self, key) for key in RANGES}
+        own = {key: a(eta) for key, a in amounts.items() if isinstance(a, Distribution)}
         return replace(self, **own) if own else self
 
     def plain(self, name: str) -> float | Array:
@@ -160,6 +170,8 @@ class AffineChange:
         twist = scaled(definition.twist, 1.0, float(self.plain("twist_scale")), self.rule("twist"))
         offset, axis = definition.section_offset_y, definition.axis
         prebend = scaled(axis.x, 1.0, float(self.plain("prebend_scale")))
+        if self.prebend is not None:
+            prebend = raised(prebend, self.prebend)
         return replace(
             definition,
             chord=scaled(definition.chord, widening, whole),
@@ -167,6 +179,29 @@ class AffineChange:
             section_offset_y=None if offset is None else scaled(offset, widening, whole),
             axis=axis if prebend is axis.x else ReferenceAxis(prebend, axis.y, axis.z),
         )
+
+
+def raised(quantity: Distribution, added: Distribution) -> Distribution:
+    """Return the sum of two distributions, exact between grid points, too."""
+    grid = united(quantity.grid, np.linspace(added.grid[0], added.grid[-1], RESOLVED))
+    both = Raised(quantity, added)
+    return replace(quantity, grid=grid, values=both(grid), spline=both.as_spline)
+
+
+@dataclass(frozen=True)
+class Raised:
+    """A distribution plus another one, with its derivatives."""
+
+    base: Distribution
+    added: Distribution
+
+    def __call__(self, eta: ArrayLike, nu: int = 0) -> Array:
+        result: Array = self.base(eta, nu) + self.added(eta, nu)
+        return result
+
+    def as_spline(self, _grid: Array, _values: Array) -> "Raised":
+        """Stand in for the spline through a grid of its values."""
+        return self
 
 
 @dataclass(frozen=True)

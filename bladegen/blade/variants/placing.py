@@ -9,6 +9,7 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.changes.deformation import AffineChange, Window, faded
 from bladegen.blade.planform import placement
 from bladegen.blade.section_planes import stretched
+from bladegen.definition.blade_definition import Distribution
 from bladegen.support.arrays import Array, ArrayLike
 
 __all__ = ["Placing", "column"]
@@ -40,7 +41,7 @@ class Placing:
         """
         chord, twist, offset_y = self.planform(change, weight)
         offset = np.stack(np.broadcast_arrays(-offset_y, self.own.offset_x), axis=-1)
-        axis, frames = self._axis(np.asarray(change.plain("prebend_scale"), dtype=np.float64))
+        axis, frames = self._axis(change)
         axes, start = placement(chord, twist, offset, axis, frames)
         shape = count, len(self.eta)
         to_space = np.concatenate([axes, start[..., None, :]], axis=-2)
@@ -69,20 +70,25 @@ class Placing:
             blade.chord(eta), blade.twist(eta), definition.offset_y(eta), definition.offset_x(eta)
         )
 
-    def _axis(self, prebend_scale: Array) -> tuple[Array, Array]:
+    def _axis(self, change: AffineChange) -> tuple[Array, Array]:
         """Return reference axes (b or 1, k, 3) and section frames (b or 1, k, 3, 3).
 
         No window touches them.
         """
+        prebend_scale = np.asarray(change.plain("prebend_scale"), dtype=np.float64)
         values, inverse = np.unique(prebend_scale, return_inverse=True)
         index = np.atleast_1d(inverse)
-        if np.all(values == 1.0):
+        if change.prebend is None and np.all(values == 1.0):
             axes, frames = (part[None] for part in self.own_axis)
             return axes[index], frames[index]
-        bent = self.blade.planform.frames.bent(values, self.eta)
-        frames = np.stack([self._frames(value) for value in values]) if bent is None else bent
-        axes = stretched(self.own_axis[0], np.atleast_1d(prebend_scale))
-        return axes, frames if len(frames) == 1 else frames[index]
+        axes, bent = stretched(self.own_axis[0], np.atleast_1d(prebend_scale)), None
+        if change.prebend is None:
+            bent = self.blade.planform.frames.bent(values, self.eta)
+        else:
+            axes[..., 0] += change.prebend(self.eta)
+        if bent is None:
+            bent = np.stack([self._frames(value, change.prebend) for value in values])
+        return axes, bent if len(bent) == 1 else bent[index]
 
     @cached_property
     def own_axis(self) -> tuple[Array, Array]:
@@ -90,9 +96,9 @@ class Placing:
         planform = self.blade.planform
         return planform.definition.axis(self.eta), planform.frames(self.eta)
 
-    def _frames(self, prebend_scale: float) -> Array:
-        """Return the section frames (k, 3, 3) at one factor of the prebend."""
-        change = AffineChange(prebend_scale=float(prebend_scale))
+    def _frames(self, prebend_scale: float, prebend: Distribution | None) -> Array:
+        """Return the section frames (k, 3, 3) at one factor of the prebend, and what is added."""
+        change = AffineChange(prebend_scale=float(prebend_scale), prebend=prebend)
         axis = change.applied(self.blade.definition, Window()).axis
         return replace(self.blade.planform.frames, axis=axis)(self.eta)
 

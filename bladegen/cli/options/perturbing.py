@@ -55,6 +55,14 @@ class Changes:
     ] = 1
     twist_scale: Annotated[float, typer.Option(help="Twist times this; 1 for no change.")] = 1
     prebend_scale: Annotated[float, typer.Option(help="Prebend times this; 1 for no change.")] = 1
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUE@ETA,...",
+            help="thickness, camber, chord or twist as above, or prebend (metres added), with "
+            "knots over span: twist=0@0.3,-2@0.7,-1@1. Repeat for more.",
+        ),
+    ] = None
     window: Annotated[
         str | None,
         typer.Option(
@@ -106,9 +114,13 @@ class Changes:
     @property
     def asked(self) -> bool:
         """Whether anything is to change."""
-        shape = bool(self.pga or self.deviation or self.erosion or self.dent)
+        shape = bool(self.pga or self.over or self.deviation or self.erosion or self.dent)
         shape = shape or self.deviation_scale != 1  # is answered, if there is no map
-        return shape or any(getattr(self, key) != getattr(Changes, key) for key in AFFINE)
+        return shape or any(self._moved(key) for key in AFFINE)
+
+    def _moved(self, key: str) -> bool:
+        """Tell whether a number is not the identity."""
+        return bool(getattr(self, key) != getattr(Changes, key))
 
     def shape_space(self) -> Any:
         """Return the shape space that coordinates belong to."""
@@ -141,15 +153,18 @@ class Changes:
         """Return the blade with the changes."""
         from math import radians
 
+        from bladegen.cli.options.knots import over_span
         from bladegen.cli.options.parsing import coordinates, span_window
 
         t = coordinates(self.pga or [])
         space = None if t is None and self.space is None else self.shape_space()
-        amounts = {key: float(getattr(self, key)) for key in AFFINE}
+        amounts: dict[str, Any] = {key: float(getattr(self, key)) for key in AFFINE}
+        amounts["twist"] = radians(self.twist)
+        amounts |= over_span(self.over or [], [key for key in AFFINE if self._moved(key)])
         return blade.perturbed(
             None if t is None else space,
             () if t is None else t,
-            **(amounts | {"twist": radians(self.twist)}),
+            **amounts,
             window=None if self.window is None else span_window(self.window),
             chord_line=self.chord_line,
             allow_extrapolation=self.allow_extrapolation,

@@ -109,7 +109,7 @@ def _in_data(found: Measured) -> Check:
     share = np.divide(np.abs(step), room, out=np.zeros_like(step), where=room > 0.0).max(axis=1)
     left = np.flatnonzero(domain.left(step))
     if left.size:
-        return Check("odd", "Shape in data", f"leaves the data's range {found.at(left[0])}")
+        return Check("odd", "Shape in data", f"beyond the data {found.at(left[0])}")
     worst = int(np.argmax(share)) if share.max() > NEAR else int(np.argmax(far))
     if share.max() > NEAR:
         word = f"{far[worst]:.1f} \u03c3, near its range's end {found.at(worst)}"

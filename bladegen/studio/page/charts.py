@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bladegen.studio.choices.drawn import CURVES, KNOTS
 from bladegen.studio.page.drawing.svg import line, path, picture, text, ticks
 from bladegen.studio.scene import Scene
 from bladegen.support.arrays import Array
@@ -69,20 +70,21 @@ def section(scene: Scene, plain: Scene, *, placed: bool = False) -> str:
 
 @dataclass(frozen=True)
 class Plot:
-    """One of the plots over span: what, its unit, its least height, and whether 0 shows."""
+    """One of the plots over span: what, its unit, its least height, whether 0 shows."""
 
     name: str
     label: str
     unit: str
     least: float
     from_zero: bool
+    step: float = 0.0  # of a key on a handle
 
 
 PLOTS = (
-    Plot("chord", "Chord", "m", 0.5, True),
-    Plot("twist", "Twist", "deg", 5.0, False),
+    Plot("chord", "Chord", "m", 0.5, True, 0.02),
+    Plot("twist", "Twist", "deg", 5.0, False, 0.1),
     Plot("thickness", "Thickness", "%", 20.0, True),
-    Plot("prebend", "Prebend", "m", 1.0, False),
+    Plot("prebend", "Prebend", "m", 1.0, False, 0.05),
 )
 
 
@@ -98,7 +100,7 @@ def planform(scene: Scene, plain: Scene) -> str:
             f"{plot.label} {now.min():.2f} to {now.max():.2f} {plot.unit} "
             f"(baseline {before.min():.2f} to {before.max():.2f})"
         )
-    return picture(PLANFORM_SIZE, "Over span: " + "; ".join(words), parts)
+    return picture(PLANFORM_SIZE, "Over span: " + "; ".join(words), parts, "group")
 
 
 def _plot(
@@ -133,9 +135,20 @@ def _plot(
         parts.append(text(x, y + 13, f"{100 * share:.0f} %"))
     mark = at(np.full(2, scene.state.at), np.array([low, high]))
     eta = scene.eta
-    return [
-        *parts,
-        path(mark, "mark"),
-        path(at(eta, before), "before"),
-        path(at(eta, now), "now"),
-    ]
+    curves = [path(mark, "mark"), path(at(eta, before), "before"), path(at(eta, now), "now")]
+    if plot.name not in CURVES:
+        return parts + curves
+    per = (high - low) / box[1]
+    scale = f'data-top="{corner[1] + top:.1f}" data-high="{high:.9g}" data-per="{per:.9g}"'
+    for knot, share in enumerate(KNOTS):
+        value = float(now[np.argmin(np.abs(eta - share))])
+        spot = at(np.array([share]), np.array([value]))[0]
+        words = f"{plot.label} at {100 * share:.0f} % of the span"
+        ends = f'aria-valuemin="{low:.4g}" aria-valuemax="{high:.4g}" aria-valuenow="{value:.4g}"'
+        curves.append(
+            f'<circle class="handle" r="4.5" cx="{spot[0]:.1f}" cy="{spot[1]:.1f}" tabindex="0" '
+            f'role="slider" aria-orientation="vertical" aria-label="{words}" {ends} '
+            f'aria-valuetext="{value:.2f} {plot.unit}" data-curve="{plot.name}" '
+            f'data-knot="{knot}" data-value="{value:.9g}" data-step="{plot.step:g}" {scale}/>'
+        )
+    return parts + curves

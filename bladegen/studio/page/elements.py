@@ -1,7 +1,7 @@
-"""The page's own elements: the 3D view and the number with its slider.
+"""The page's own elements: the 3D view, the number with its slider, curves with handles.
 
-What they do in the browser stands in ``stage.js`` and ``number.js``.  three.js comes with the web
-framework, so nothing is fetched from elsewhere.
+What they do in the browser stands in ``stage.js``, ``number.js`` and ``curves.js``.  three.js comes
+with the web framework, so nothing is fetched from elsewhere.
 """
 
 from functools import cache
@@ -10,7 +10,7 @@ from typing import Any
 
 from bladegen.studio.controls import Control
 
-__all__ = ["number", "stage"]
+__all__ = ["curves", "number", "stage"]
 
 WORDS = "The blade in 3D. Drag to turn it, scroll to come nearer; the figures stand beside it."
 
@@ -48,6 +48,15 @@ def number(control: Control, value: float, *, peeks: bool = False) -> Any:
         peeks=peeks,
     )
     return element
+
+
+def curves() -> Any:
+    """Put curves whose handles are dragged on the page that is being built.
+
+    Its events: ``drag`` with curve, knot and the wanted value, none for back to the baseline, and
+    ``settle`` when a handle is let go.  Its method: ``put(picture)``.
+    """
+    return _kind("curves")()
 
 
 @cache

@@ -10,7 +10,7 @@ from bladegen.studio.results.answers import BladeAnswer, SectionAnswer
 
 __all__ = ["Row", "figures", "rows", "table"]
 
-SAME = 5e-5  # of a figure: less is no change
+SAME = 5e-4  # of a figure: less is no change
 UNSURE = 0.9  # of NeuralFoil's confidence, below which it is shown
 
 

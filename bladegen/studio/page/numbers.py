@@ -38,8 +38,8 @@ def shape_number(page: Page, control: Control, mode: int) -> None:
             profiles, step = baseline.peek(state, mode)
             title = f"<b>{control.label}</b> {control.hint}"
             ends = (
-                f'<span class="less">\u2212{step:.3f} rad</span> as it is '
-                f'<span class="more">+{step:.3f} rad</span>, one standard deviation of the data'
+                f'<span class="less">\u2212{step:.3f} rad</span>, as it is (dashed), '
+                f'<span class="more">+{step:.3f} rad</span>: one standard deviation of the data'
             )
             return f"{title}{modes.mode(profiles, control.effect, step)}<small>{ends}</small>"
 

@@ -9,15 +9,24 @@ from bladegen.studio.controls import AFFINE, END, START
 from bladegen.studio.page.bar import bar, key
 from bladegen.studio.page.beside import beside
 from bladegen.studio.page.buttons import toggle
-from bladegen.studio.page.elements import stage
+from bladegen.studio.page.elements import curves, stage
 from bladegen.studio.page.figures import figures
 from bladegen.studio.page.legend import legend
+from bladegen.studio.page.looks import looks
 from bladegen.studio.page.numbers import number_of, own_number, shape_number
 from bladegen.studio.page.section import section
 from bladegen.studio.page.tab import Page, Shown
 
 __all__ = ["build"]
 
+# hints and menus stand outside the page's landmarks; each becomes one of its own
+LANDMARKS = """new MutationObserver((records) => {
+    for (const { addedNodes } of records) for (const node of addedNodes)
+        if (node.id?.startsWith("q-portal")) {
+            node.setAttribute("role", "region");
+            node.setAttribute("aria-label", node.id.replace("q-portal--", "").replaceAll("-", " "));
+        }
+}).observe(document.body, { childList: true })"""
 ICONS = {"good": "check_circle", "near": "warning_amber", "odd": "info", "bad": "error"}
 STATUS = {"good": "good", "near": "near its limit", "odd": "worth a look", "bad": "not usable"}
 LOFTS: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
@@ -30,13 +39,6 @@ LOFTS: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
         "chord and 0.02 deg away",
         {"As given": {"fair": False}, "Fair": {"fair": True}},
     ),
-}
-VIEWS = {
-    "blade": ("Whole blade", "Blade"),
-    "root": ("The root", "Root"),
-    "tip": ("The tip", "Tip"),
-    "flat": ("From the suction side", "Flat"),
-    "edge": ("From the trailing edge", "Edge"),
 }
 
 
@@ -55,12 +57,15 @@ def build(page: Page) -> None:
         profile = section(page)
         with ui.element("section").classes("card planform").props('aria-label="Planform"'):
             ui.html("Over span", tag="h2", sanitize=False)
-            planform = ui.html("", sanitize=False).classes("plot")
+            planform = curves()
+            planform.on("drag", lambda event: page.drag(**event.args))
+            planform.on("settle", page.pause, [])
+    ui.run_javascript(LANDMARKS)
     ui.keyboard(on_key=lambda event: key(page, event), ignore=["input", "select", "textarea"])
 
     def charts(shown: Shown) -> None:
         profile(shown)
-        planform.set_content(shown.planform)
+        planform.run_method("put", shown.planform)
         checks(shown)
         view(shown)
 
@@ -161,10 +166,7 @@ def _view(page: Page) -> Callable[[Shown], None]:
             title = ui.html("", tag="b", sanitize=False)
             under = ui.html("", tag="span", sanitize=False)
         with ui.element("div").classes("views").props('role=toolbar aria-label="View"'):
-            for view, (words, label) in VIEWS.items():
-                button = ui.button(label, color=None)
-                button.props(f'flat dense no-caps size=12px padding="2px 8px" aria-label="{words}"')
-                button.on_click(lambda view=view: page.stage.run_method("look", view))
+            looks(page.stage)
             toggle("palette", "Colour what lies off the baseline", True, page.stage, "paint")
             beside(page)
             toggle("grid_on", "Outline of the baseline", False, page.stage, "overlay")

@@ -82,6 +82,10 @@ export default {
     this.scene.add(this.blade, this.ring, this.ghost);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", this.draw);
+    this.controls.addEventListener("start", () => (this.turned = true));
+    const table = document.querySelector(".figures");
+    this.grown = new ResizeObserver(() => !this.turned && this.hidden() && this.fit());
+    if (table) this.grown.observe(table);
     this.resized = new ResizeObserver(this.resize);
     this.resized.observe(this.$el);
     this.themed = new MutationObserver(() => this.recolour());
@@ -90,6 +94,7 @@ export default {
   },
   beforeUnmount() {
     this.resized?.disconnect();
+    this.grown?.disconnect();
     this.themed?.disconnect();
     clearTimeout(this.resting);
     this.controls?.dispose();
@@ -264,6 +269,7 @@ export default {
     },
     look(view) {
       this.view = view;
+      this.turned = false;
       this.fit();
     },
     // Move the eye so that a part of the span fills the view, and only just.
@@ -285,6 +291,37 @@ export default {
       const box = new THREE.Box3().setFromPoints(part);
       const target = box.getCenter(new THREE.Vector3());
       const away = new THREE.Vector3(...eye).normalize();
+      const covered = this.covered();
+      this.part = part;
+      this.approach(target, away, part, 0, ROOM[0]);
+      if (covered && this.hidden()) {
+        box.getCenter(target);
+        this.approach(target, away, part, -covered.share, ROOM[0] - covered.share);
+      }
+      this.controls.target.copy(target);
+      this.controls.update();
+      this.draw();
+    },
+    // The table of figures over this view: its share of the width, and where it begins.
+    covered() {
+      const table = document.querySelector(".figures")?.getBoundingClientRect();
+      const view = this.$el.getBoundingClientRect();
+      if (!table?.width || table.left >= view.right || table.top >= view.bottom) return null;
+      const share = (view.right - table.left) / view.width;
+      return share < 0.6 ? { share, low: 1 - (2 * (table.top - view.top)) / view.height } : null;
+    },
+    // Whether a part of what is looked at lies behind the table.
+    hidden() {
+      const covered = this.covered();
+      if (!covered || !this.part) return false;
+      this.camera.updateMatrixWorld();
+      return this.part.some((p) => {
+        const { x, y } = p.clone().project(this.camera);
+        return x > 1 - 2 * covered.share && y < covered.low;
+      });
+    },
+    // Move the eye along a line, so that points fill a room about a place of the view's width.
+    approach(target, away, part, middle, room) {
       this.camera.near = 0.01;
       this.camera.far = 100 * this.length;
       this.camera.updateProjectionMatrix();
@@ -297,10 +334,10 @@ export default {
         this.camera.updateMatrixWorld();
         const seen = part.map((p) => p.clone().project(this.camera));
         const ends = new THREE.Box3().setFromPoints(seen);
-        const wide = Math.max((ends.max.x - ends.min.x) / (2 * ROOM[0]), (ends.max.y - ends.min.y) / (2 * ROOM[1]));
+        const wide = Math.max((ends.max.x - ends.min.x) / (2 * room), (ends.max.y - ends.min.y) / (2 * ROOM[1]));
         const half = distance * Math.tan((this.camera.fov * Math.PI) / 360);
         this.camera.matrixWorld.extractBasis(side, up, new THREE.Vector3());
-        target.addScaledVector(side, 0.5 * (ends.max.x + ends.min.x) * half * this.camera.aspect);
+        target.addScaledVector(side, (0.5 * (ends.max.x + ends.min.x) - middle) * half * this.camera.aspect);
         target.addScaledVector(up, 0.5 * (ends.max.y + ends.min.y) * half);
         const behind = part.some((p) => side.copy(p).sub(this.camera.position).dot(away) > -0.02 * distance);
         distance *= behind ? 1.3 : Math.min(1.25, Math.max(0.8, wide));
@@ -310,9 +347,6 @@ export default {
       this.camera.near = this.length / 500;
       this.camera.far = far + 3 * this.length;
       this.camera.updateProjectionMatrix();
-      this.controls.target.copy(target);
-      this.controls.update();
-      this.draw();
     },
     resize() {
       const { clientWidth, clientHeight } = this.$el;

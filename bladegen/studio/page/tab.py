@@ -8,6 +8,7 @@ and what comes out is shown at once: surface, charts, checks, buttons and the ta
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import isfinite
 from secrets import token_urlsafe
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from bladegen.errors import BladegenError, StudioError
 from bladegen.studio import recipes
+from bladegen.studio.choices.drawn import CURVES, KNOTS
 from bladegen.studio.choices.loft import Loft
 from bladegen.studio.controls import Control, controls
 from bladegen.studio.page import charts
@@ -78,6 +80,18 @@ class Page:
     def set_window(self, start: object, end: object) -> None:
         """Move the window."""
         self._try(lambda: self.state.within(start, end), "window")
+
+    def drag(self, curve: str, knot: int, value: float | None) -> None:
+        """Drag a curve over span at a knot; without a value back to where it was."""
+        state = self.state
+        if not (curve in CURVES and knot in range(len(KNOTS)) and isfinite(value or 0.0)):
+            return
+        if value is None:
+            found = state.dragged(curve, knot, CURVES[curve].identity)
+        else:
+            baseline = self.studio.library.baseline(state.blade, state.loft)
+            found = baseline.dragged(state, curve, knot, value)
+        self.move(self.history.moved(found, f"{curve} {knot}"))
 
     def _try(self, make: Callable[[], State], control: str) -> None:
         try:

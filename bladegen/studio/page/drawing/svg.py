@@ -26,10 +26,10 @@ def ticks(low: float, high: float, count: int = 4) -> list[float]:
     return [round(k * step, 12) for k in range(first, last + 1)]
 
 
-def picture(size: tuple[int, int], words: str, parts: list[str]) -> str:
+def picture(size: tuple[int, int], words: str, parts: list[str], role: str = "img") -> str:
     """Return a chart of a size, and what it shows in words for those who do not see it."""
     return (
-        f'<svg class="chart" viewBox="0 0 {size[0]} {size[1]}" role="img" '
+        f'<svg class="chart" viewBox="0 0 {size[0]} {size[1]}" role="{role}" '
         f'aria-label="{escape(words)}">{"".join(parts)}</svg>'
     )
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import bladegen as bg
-from bladegen.blade.changes.deformation import AffineChange, Window
+from bladegen.blade.changes.deformation import RANGES, AffineChange, Window
 from bladegen.blade.edges import AsGiven, MinimumThickness, Sharp
 from bladegen.blade.soundness import Trial
 from bladegen.blade.variants.batch import FAULTS, LOST_THICKNESS, SectionBatch
@@ -49,7 +49,7 @@ def test_a_batch_holds_the_sections_of_perturbed_blades(name):
     )
     result = made.evaluate(t, change)
     for i in range(6):
-        single = {key: float(value[i]) for key, value in vars(change).items()}
+        single = {key: float(getattr(change, key)[i]) for key in RANGES}
         variant = made.blade.untested(space(), t[i], AffineChange(**single))
         assert_allclose(result.sections[i], variant.sections(SPANS), rtol=0, atol=1e-9)
         assert_allclose(result.chord[i], variant.chord(SPANS), rtol=0, atol=1e-12)

@@ -184,7 +184,7 @@ class Family:
 
     def _blade(self, place: int, values: Array) -> Blade:
         t, change = self._rules.split(values[None])
-        single = {name: float(np.ravel(getattr(change, name))[0]) for name in RANGES}
+        single: Any = {name: float(np.ravel(getattr(change, name))[0]) for name in RANGES}
         return self.blade.untested(
             self.space,
             t[0],

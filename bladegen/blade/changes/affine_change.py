@@ -122,7 +122,7 @@ class AffineChange:
     def at(self, eta: Array) -> "AffineChange":
         """Return the parameters at span fractions (k,)."""
         amounts = {key: getattr(self, key) for key in RANGES}
-        own = {key: a(eta) for key, a in amounts.items() if isinstance(a, Distribution)}
+        own: Any = {key: a(eta) for key, a in amounts.items() if isinstance(a, Distribution)}
         return replace(self, **own) if own else self
 
     def plain(self, name: str) -> float | Array:

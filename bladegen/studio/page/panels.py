@@ -8,11 +8,10 @@ from typing import Any
 from bladegen.studio.controls import AFFINE, END, START
 from bladegen.studio.page.bar import bar, key
 from bladegen.studio.page.beside import beside
-from bladegen.studio.page.buttons import toggle
+from bladegen.studio.page.buttons import looks, toggle
 from bladegen.studio.page.elements import curves, stage
 from bladegen.studio.page.figures import figures
 from bladegen.studio.page.legend import legend
-from bladegen.studio.page.looks import looks
 from bladegen.studio.page.numbers import number_of, own_number, shape_number
 from bladegen.studio.page.section import section
 from bladegen.studio.page.tab import Page, Shown

@@ -156,3 +156,22 @@ def test_variants_are_blades_of_commands(tmp_path):
         assert isinstance(result.exception, BladegenError)
         assert said in str(result.exception)
     assert not Path("s3:").exists()
+
+
+def test_how_a_family_spreads_is_drawn(tmp_path):
+    from PIL import Image
+
+    assert run("-o", tmp_path / "fam", *FEW).exit_code == 0
+    pictures = []
+    for name, more in (("a.png", ()), ("b.png", ("--where", "attempts >= 1"))):
+        words = ["info", str(tmp_path / "fam"), "--plot", str(tmp_path / name), *more]
+        shown = CliRunner().invoke(commands.app, words)
+        assert shown.exit_code == 0, shown.output
+        assert "wrote" in shown.output
+        pictures.append(np.asarray(Image.open(tmp_path / name).convert("RGB"), dtype=float))
+    orange = [((p[..., 0] > 200) & (p[..., 1] < 130) & (p[..., 2] < 60)).sum() for p in pictures]
+    assert orange[0] == 0
+    assert orange[1] > 1000  # those that fulfil conditions
+    assert pictures[0].std() > 10
+    words = ["info", "nrel5mw", "--plot", str(tmp_path / "c.png")]
+    assert "plot: is for a family" in str(CliRunner().invoke(commands.app, words).exception)

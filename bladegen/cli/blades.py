@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from bladegen.cli.options.common import Airfoils, Json
+from bladegen.cli.options.common import Airfoils, Json, ending_in
 from bladegen.cli.terminal import print_figures, print_findings, print_table
 from bladegen.errors import BladegenError
 from bladegen.formats.bundled import Facts, bundled, facts, layups
@@ -53,6 +53,14 @@ def info(
             help="Of a family: which variants fulfil them, 'volume > 600 and t1 < 0.1'.",
         ),
     ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Of a family: how its numbers spread, a PNG, SVG or PDF.",
+            callback=ending_in(".png", ".svg", ".pdf"),
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Show what a blade's definition holds.
@@ -66,10 +74,12 @@ def info(
 
     path = Path(blade)
     if path.is_dir() and (path / "family.json").is_file():
-        _print_family(path, where, as_json)
+        _print_family(path, where, plot, as_json)
         return
-    if where is not None:
-        raise BladegenError(f"where: is for a family's folder, which {blade} is not; leave it out")
+    for name, value in (("where", where), ("plot", plot)):
+        if value is not None:
+            said = f"is for a family's folder, which {blade} is not; leave it out"
+            raise BladegenError(f"{name}: {said}")
     made = None if blade in bundled() or not path.is_file() else _made_by(path)
     if made is not None and not (is_read(path) and holds_blade(path)):
         _print_making(blade, made, as_json)
@@ -132,14 +142,16 @@ def _print_making(file: str, made: Any, as_json: bool) -> None:
         print_figures(f"{file}: what it is made from", facts)
 
 
-def _print_family(path: Path, where: str | None, as_json: bool) -> None:
-    """Print what a family holds, and which of its variants fulfil conditions."""
+def _print_family(path: Path, where: str | None, plot: Path | None, as_json: bool) -> None:
+    """Print, and draw, what a family holds, and which of its variants fulfil conditions."""
     from bladegen.families.dataset.loading import load_family
     from bladegen.families.dataset.summary import figures
 
     family = load_family(path)
     found = figures(family)
     places = None if where is None else family.where(where)
+    if plot is not None:
+        _draw_family(family, found["ranges"], places, where, plot)
     if as_json:
         found |= {} if places is None else {"where": where, "fulfilled_by": places.tolist()}
         typer.echo(json.dumps(found, indent=2))
@@ -152,9 +164,29 @@ def _print_family(path: Path, where: str | None, as_json: bool) -> None:
     ranges = found["ranges"].items()
     rows = [[name, own["unit"], *(f"{own[one]:.5g}" for one in head)] for name, own in ranges]
     print_table(["of sound variants", "unit", *head], rows)
+    if plot is not None:
+        typer.echo(f"wrote {plot}")
     if places is None:
         return
     shown = [[str(k), str(family["name"][k])] for k in places[:SHOWN].tolist()]
     print_table(["variant", "name"], shown, title=f"{len(places)} of {len(family)}: {where}")
     if len(places) > SHOWN:
         typer.echo(f"and {len(places) - SHOWN} more; --json gives all")
+
+
+def _draw_family(family: Any, ranges: Any, places: Any, where: str | None, plot: Path) -> None:
+    """Draw how numbers of the sound variants spread."""
+    import numpy as np
+
+    from bladegen.support.files import replacing
+    from bladegen.views.plots.spread_plot import draw
+
+    held = None if places is None else np.isin(np.arange(len(family)), places)
+    sound = {
+        name: (np.where(family.valid, family.numbers[name], np.nan), ranges[name]["unit"])
+        for name in ranges
+    }
+    title = f"{family.identity['blade']}: {int(family.valid.sum())} sound of {len(family)} variants"
+    title += "" if places is None else f"; {len(places)} of them with {where}"
+    with replacing(plot) as temporary:
+        draw(sound, held, title, temporary)

@@ -9,6 +9,7 @@ Python looks for garbage seldom, and never among what is loaded once all tests a
 """
 
 import gc
+import importlib
 import os
 
 os.environ["OMP_NUM_THREADS"] = os.environ.get("OMP_NUM_THREADS", "1")
@@ -52,6 +53,12 @@ def uncounted(call):
             sys.settrace(trace)
 
     return quick
+
+
+if sys.gettrace() is not None:  # before tests load them: what they do then takes seconds
+    for name in zygote.SLOW:
+        if not name.startswith("bladegen"):
+            uncounted(importlib.import_module)(name)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -1,5 +1,6 @@
 """Writers: what is written is read back the same, within what the format can hold."""
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -200,6 +201,17 @@ def test_a_blade_put_back_unchanged_leaves_the_file_as_it_was(turbine, tmp_path)
     for comment in ("# a turbine", "# text, not a number", "# its axis", "# untouched"):
         assert comment in text
     assert "-7.427228791550719e-05, 9.71445146547012e-17, .inf, 1_000" in text
+
+
+def test_a_blade_put_back_unchanged_leaves_all_bytes(turbine, tmp_path):
+    """Anchors that stand twice, as in IEA 10 MW's file, and spaces that nobody would write."""
+    text = turbine.read_text(encoding="utf-8")
+    odd = "odd:   {one: &id1 [1.0], two: *id1, three: &id1 [2.0],   four: *id1}\n\n\n"
+    turbine.write_text(text + odd, encoding="utf-8")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        write_into(bg.read(turbine), turbine, tmp_path / "again.yaml")
+    assert (tmp_path / "again.yaml").read_bytes() == turbine.read_bytes()
 
 
 def test_only_the_blade_is_changed_and_aliases_of_it_are_kept(turbine, tmp_path):

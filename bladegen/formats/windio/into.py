@@ -88,10 +88,16 @@ def write_into_turbine(
     ]
     said = [*_airfoils(full, new["airfoils"], turbine, found[0].polars)]
     findings += said
-    _configurations(full, new)
-    findings += _doubts(plain, full, changed, unchanged=not (changed or said))
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8") as stream:
-        yaml.dump(full, stream)
+    asked = _configurations(full, new)
+    unchanged = not (changed or said)
+    findings += _doubts(plain, full, changed, unchanged=unchanged)
+    own = turbine.read_bytes() if unchanged and not asked else None
+    with replacing(path) as temporary:
+        if own is not None:  # a dump would rename anchors that stand twice
+            temporary.write_bytes(own)
+        else:
+            with temporary.open("w", encoding="utf-8") as stream:
+                yaml.dump(full, stream)
     return tuple(findings)
 
 
@@ -187,8 +193,12 @@ def _read(entry: Any, polars: Callable[[Airfoil], list[Document]]) -> list[Docum
     return polars(known)
 
 
-def _configurations(full: Any, new: Document) -> None:
-    """Let the schedule ask for polars that its airfoils have: WISDEM stops at any other."""
+def _configurations(full: Any, new: Document) -> bool:
+    """Let the schedule ask for polars that its airfoils have: WISDEM stops at any other.
+
+    Returns whether that changed it.
+    """
+    changed = False
     shape = new["components"]["blade"].get("outer_shape", {})
     wanted = {entry["name"]: entry for entry in shape.get("airfoils", [])}
     known = {a.get("name"): a.get("polars") for a in full["airfoils"] if isinstance(a, Mapping)}
@@ -198,6 +208,8 @@ def _configurations(full: Any, new: Document) -> None:
         ours = wanted.get(entry["name"], {})
         if "configuration" in ours and not set(entry.get("configuration", [None])) <= set(names):
             entry |= {key: flow(ours[key]) for key in ("configuration", "weight")}
+            changed = True
+    return changed
 
 
 def _near(old: Any, new: Document) -> bool:

@@ -4,6 +4,7 @@ The parser is ruamel.yaml's; a file has been through `yaml_file` before, which b
 """
 
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ def round_trip(path: Path) -> tuple[Any, Any]:
     """Return a parser that makes plain data and keeps what it reads, and what it read."""
     from ruamel.yaml import YAML
     from ruamel.yaml.constructor import RoundTripConstructor
-    from ruamel.yaml.error import YAMLError
+    from ruamel.yaml.error import ReusedAnchorWarning, YAMLError
     from ruamel.yaml.representer import RoundTripRepresenter
 
     class Constructor(RoundTripConstructor):
@@ -38,7 +39,9 @@ def round_trip(path: Path) -> tuple[Any, Any]:
     yaml.allow_unicode = not text.isascii()  # characters that the file escapes stay escaped
     yaml.indent(**_indents(text))
     try:
-        return yaml, yaml.load(text)
+        with warnings.catch_warnings():  # an anchor may stand twice
+            warnings.simplefilter("ignore", ReusedAnchorWarning)
+            return yaml, yaml.load(text)
     except (YAMLError, ValueError) as error:
         said = " ".join(str(error).split())
         raise FileError(str(path), [f"cannot be kept as it is: {said}"]) from None

@@ -77,9 +77,27 @@ def test_published_blades_have_no_steps(name):
 
 def test_a_step_where_noses_compete_is_found():
     blade = bg.Blade.from_definition(bg.read("iea15mw"))
-    t = [0.07457092262601152, 0.00102199978182673, 0.03947326178223441, -0.005823688115812977]
-    (found,) = steps(blade.perturbed(bg.ShapeSpace.bundled(), t))
-    eta, change, times = found
-    assert 0.262 < eta < 0.264
+    found = steps(blade.perturbed(bg.ShapeSpace.bundled(), [-0.085, 0.002, -0.056, -0.014]))
+    eta, change, times = max(found, key=lambda step: step[1])
+    assert 0.25 < eta < 0.26
     assert 1e-3 < change < 1e-2
     assert times > 20.0
+
+
+def test_a_nose_that_is_flat_for_a_little_turns_no_chord_line():
+    """Front points nearly as far as the nose and right beside it are no rivals of it."""
+    blade = bg.Blade.from_definition(bg.read("iea15mw"))
+    t = [0.07457092262601152, 0.00102199978182673, 0.03947326178223441, -0.005823688115812977]
+    assert steps(blade.perturbed(bg.ShapeSpace.bundled(), t)) == []
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("seed", [5, 9])
+@pytest.mark.parametrize("name", ["iea15mw", "nrel5mw"])
+def test_sound_variants_have_hardly_a_step(name, seed):
+    """One in eight at most, up to 0.6 % of the chord; one in six, up to 0.8 %, in 2.0.0rc1."""
+    blade = bg.Blade.from_definition(bg.read(name))
+    variants = bg.family(blade, bg.ShapeSpace.bundled(), count=60, seed=seed)
+    found = [steps(variant) for variant in variants]
+    assert sum(bool(one) for one in found) <= 60 // 8
+    assert all(change < 6e-3 for one in found for _, change, _ in one)

@@ -10,10 +10,12 @@ with the squared distances q_i of landmarks p_i, their shares w_i of u, and l by
 So it is with the distance, sqrt(l (1 + 7/6 mean x)): the factor is that of parabolas.  Both are C1
 in the landmarks.  The mean leads where other points rival the farthest one, at u, by
 
-    Y = sum_i w_i y_i^2 / (|u_i - u| + NEAR),
-    y_i = max(1 - (1 - q_i / q + DIGITS) / (ROUND (u_i - u)^2 + DIGITS), 0).
+    Y = sum_i w_i y_i^2 d_i^2 / (d_i^2 + NEAR^2)^(3/2),    d_i = u_i - u,
+    y_i = max(1 - (1 - q_i / q + DIGITS) / (ROUND d_i^2 + DIGITS), 0).
 
-Where Y is 0, as on a circle, the leading edge is the farthest point, from `LED` on it is the mean.
+Where Y is 0, as on most airfoils, the leading edge is the farthest point; from `LED` on, as on a
+circle, it is the mean.  Rivals much nearer than `NEAR` count for little: they are one nose, which
+is flat there for less than the mean would move the leading edge.
 """
 
 from dataclasses import dataclass
@@ -26,13 +28,13 @@ from bladegen.support.arrays import Array, Indices, Mask
 
 __all__ = ["Front", "Led"]
 
-MASS = 6e-8  # of u; points of a circle count up to 1e-3 of its diameter behind the farthest
+MASS = 5e-8  # of u; points of a circle count up to 9e-4 of its diameter behind the farthest
 PARABOLA = 7.0 / 6.0  # of the mean x is the largest one
 ROUND = 6.0  # of 1 / u^2, by which squared distances fall off; on a circle it is 9.9 to 8
 DIGITS = 1e-7  # of squared distances; what they differ by where they are taken to be the same
-NEAR = 1e-4  # of u
+NEAR = 1e-3  # of u
 SAME = 1e-13  # of squared distances; rounding
-LED = 0.1  # of Y; two noses that are as far have some 0.3, however near they are
+LED = 0.07  # of Y; two noses that are as far have some 0.3, and a third of it at a distance `NEAR`
 ALMOST = 1.2  # times `ROUND`; a front that falls off by more is not made round by a little
 FIRST = 4e-3  # by which squared distances differ in a first guess of l
 POWER = 0.4  # of the mass is nearly linear in l: that of parabolas is
@@ -112,8 +114,9 @@ class Front:
         if not rows.size:
             return Led(shares, means, wide, np.stack([low, high]))
         y = self.rivals(squares[rows], top[rows], u[rows])
-        apart = np.abs(self.u[self.ahead] - u[rows, None]) + NEAR
-        f = np.minimum((y * y * self.shares / apart).sum(axis=1) / LED, 1.0)
+        apart = (self.u[self.ahead] - u[rows, None]) ** 2
+        y *= y * self.shares * apart / (apart + NEAR * NEAR) ** 1.5
+        f = np.minimum(y.sum(axis=1) / LED, 1.0)
         shares[rows] = f * f * (3.0 - 2.0 * f)
         rows = rows[f > 0.0]
         weights, far = self._means(squares[rows], squares[rows, best[rows]])

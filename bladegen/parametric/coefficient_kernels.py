@@ -26,7 +26,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["linearised", "lines_slopes"]
 
-REVISION = 15  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 16  # of all that is compiled with these: with another text it is compiled anew
 TERMS = 20  # of the series of cos S and sin S / S; principal angles below 2 rad need 14
 
 

@@ -12,7 +12,7 @@ from bladegen.support.compiled import compiled
 
 __all__ = ["points_gradient", "points_slopes"]
 
-REVISION = 14  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 15  # of all that is compiled with these: with another text it is compiled anew
 BLOCK = 128  # points
 
 

@@ -26,7 +26,7 @@ from bladegen.support.compiled import ONE, ZERO, compiled
 
 __all__ = ["CROSSING", "OPEN", "SOUND", "lines", "made"]
 
-REVISION = 22  # of all that is compiled with these: with another text it is compiled anew
+REVISION = 23  # of all that is compiled with these: with another text it is compiled anew
 SOUND, CROSSING, OPEN = range(3)  # what is known of a section
 AHEAD, BEHIND = WINDOW
 

@@ -123,11 +123,11 @@ def rivals(u: Array, squares: Array, first: int, place: float, top: float) -> tu
         return wide, rivalry
     for i in range(len(squares)):
         at = first + i
-        away = abs(u[at] - place)
-        fall, gap = ROUND * away * away, 1.0 + DIGITS - squares[i] / top
+        apart = (u[at] - place) ** 2
+        fall, gap = ROUND * apart, 1.0 + DIGITS - squares[i] / top
         if gap < fall + DIGITS:
             y = 1.0 - gap / (fall + DIGITS)
-            rivalry += 0.5 * (u[at + 1] - u[at - 1]) * y * y / (away + NEAR)
+            rivalry += 0.5 * (u[at + 1] - u[at - 1]) * y * y * apart / (apart + NEAR * NEAR) ** 1.5
     return wide, rivalry
 
 
@@ -229,10 +229,11 @@ def rival_weights(
         at = first + i
         away = u[at] - place
         fall, gap = ROUND * away * away + DIGITS, 1.0 + DIGITS - squares[i] / top
-        y, near = max(1.0 - gap / fall, 0.0), abs(away) + NEAR
-        part = 0.5 * (u[at + 1] - u[at - 1]) * y / near
+        y, near = max(1.0 - gap / fall, 0.0), away * away + NEAR * NEAR
+        share = 0.5 * (u[at + 1] - u[at - 1]) * y / near**1.5
+        part = share * away * away
         weights[i] = 2.0 * part / (fall * top)
         of_top -= weights[i] * squares[i] / top
         of_place -= 4.0 * ROUND * part * gap * away / (fall * fall)
-        of_place += part * y / near * (1.0 if away > 0.0 else -1.0)
+        of_place -= share * y * away * (2.0 * NEAR * NEAR - away * away) / near
     return of_top, of_place

@@ -148,6 +148,17 @@ def test_a_root_that_is_cut_at_a_slant_does_not_turn_the_pitch_axis(degrees):
         assert any("if it is no flange but a cut, --root circles" in one for one in doubted.said)
 
 
+def test_a_doubtful_flange_is_none_where_the_axes_of_the_file_are_taken():
+    leaning = from_blade(bg.Blade.from_definition(bg.read("iea15mw"), landmarks=101), stations=100)
+
+    def said(frame):
+        pose = found(surfaces.of_mesh(leaning), "it", metres=1.0, unit=None, frame=frame)
+        return " ".join(pose.said)
+
+    assert "2.0 degrees off the axis of its circles" in said("blade")
+    assert "--root circles" not in said("auto")
+
+
 def test_what_breaks_off_inside_is_one_line_with_the_file(monkeypatch, mesh):
     from bladegen.fitting import fit as module
 

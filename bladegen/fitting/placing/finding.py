@@ -73,7 +73,7 @@ def found(
     if _root_last(widths):
         pose = _turned(pose, surface)
         widths = widths[::-1]
-    pose, diameter = upright(pose, surface, said, root=root, flanged=flanged)
+    pose, diameter, doubt = upright(pose, surface, said, root=root, flanged=flanged)
     pose = sided(pose, surface, name, said)
     own = _own_axes(pose, diameter) if frame != "blade" else None
     if own is None and frame == "file":
@@ -87,6 +87,7 @@ def found(
     else:
         pose = _untwisted(pose, surface)
         said.append("the file's axes are not the blade's: twist is zero at 90 % of the span")
+        said += [doubt] if doubt else []
     if pose.mirrored:
         said.append("it is a mirror image: its rotor turns anticlockwise seen from upwind")
     return replace(pose, said=tuple(said))

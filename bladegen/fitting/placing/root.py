@@ -32,9 +32,10 @@ THIN = 0.01  # of a rim's size, which it leaves its plane by at most
 
 def upright(
     pose: Pose, surface: Surface, said: list[str], *, root: str = "auto", flanged: bool = True
-) -> tuple[Pose, float]:
-    """Bring the root's flange to z = 0 and its middle to the axis; also return its diameter.
+) -> tuple[Pose, float, str]:
+    """Bring the root's flange to z = 0 and its middle to the axis.
 
+    Also return its diameter, and what is doubtful about the axis unless the file's own is taken.
     Where there is no flange, or where it is a cut across the blade at a slant, the axis of a round
     root is brought to z, and z = 0 is where the blade is whole.
 
@@ -69,14 +70,15 @@ def upright(
         middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
         radius = 0.5 * float(np.ptp(outline, axis=0).max())
         said.append("the root is no circle: the pitch axis goes through its middle")
+    doubt = ""
     if flat and not flanged:
         said.append("the pitch axis is along the points, which have no flange")
     elif flat:
         said.append("the pitch axis is normal to the root's flange")
         if tube and apart > DOUBT:
-            said[-1] += (
-                f", which is {np.degrees(apart):.1f} degrees off the axis of its circles: if it is "
-                "no flange but a cut, --root circles"
+            doubt = (
+                f"the root's flange is {np.degrees(apart):.1f} degrees off the axis of its circles:"
+                " if it is no flange but a cut, --root circles"
             )
     elif run:
         said.append("the pitch axis is the middle of the root's circles")
@@ -89,7 +91,7 @@ def upright(
             f"the root's end is {np.degrees(apart):.1f} degrees off square: the blade begins where "
             f"it is whole, {low - under:.3g} m from its lowest point"
         )
-    return replace(pose, origin=pose.origin - [*middle, low]), 2.0 * radius
+    return replace(pose, origin=pose.origin - [*middle, low]), 2.0 * radius, doubt
 
 
 def _on_flange(pose: Pose, surface: Surface) -> Pose | None:

@@ -11,6 +11,7 @@ from bladegen.cli.options.common import Json, ending_in
 from bladegen.cli.options.groups import COMMAND, grouped
 from bladegen.cli.options.parsing import metres
 from bladegen.cli.terminal import print_figures, print_findings, print_table, progress_bar
+from bladegen.errors import BladegenError, Finding
 
 __all__ = ["fit"]
 
@@ -115,11 +116,8 @@ def fit(
 
     A report lies beside it. Exit with 1 if the tolerance is missed; the files are there then, too.
     """
-    from bladegen.errors import Finding
-    from bladegen.exports.definitions import write
     from bladegen.fitting.fit import fit as fitted_to
     from bladegen.formats.reading import read
-    from bladegen.formats.windio.writing import within
     from bladegen.formats.writing import format_of
     from bladegen.support.files import replacing
 
@@ -138,12 +136,15 @@ def fit(
             progress=progress,
         )
         progress(f"writing {target}")
-        definition, findings = fitted.definition, []
-        if row.title.startswith("windIO"):  # moved by itself it is a hundred times closer than fits
-            definition = within(
-                definition, lambda *one: findings.append(Finding(*one)), WITHIN * allowed
-            )
-        findings += write(definition, target, command=COMMAND.get(), polars="none")
+        try:
+            findings = _written(fitted, target, row.title, WITHIN * allowed)
+        except BladegenError as error:
+            if not fitted.noise:
+                raise
+            raise BladegenError(
+                f"{error}; the points scatter by {1e3 * fitted.noise:.2g} mm: a larger --tolerance "
+                "takes fewer airfoils"
+            ) from None
         report = fitted.report() | {"format": row.title}
         told = target.with_suffix(".fit.json")
         with replacing(told) as temporary:
@@ -167,6 +168,18 @@ def fit(
         for path in (target, told, *([screenshot] if screenshot else [])):
             typer.echo(f"wrote {path}")
     fitted.require_held()
+
+
+def _written(fitted: Any, target: Path, title: str, off: float) -> list[Any]:
+    """Write the definition, a windIO file no closer than `off` [m]; return what it cannot hold."""
+    from bladegen.exports.definitions import write
+    from bladegen.formats.windio.writing import within
+
+    definition, findings = fitted.definition, []
+    if title.startswith("windIO"):  # moved by itself it is a hundred times closer than fits
+        definition = within(definition, lambda *one: findings.append(Finding(*one)), off)
+    findings += write(definition, target, command=COMMAND.get(), polars="none")
+    return findings
 
 
 def _print_bands(fitted: Any) -> None:

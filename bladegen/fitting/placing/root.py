@@ -26,6 +26,7 @@ ROOTS = ("auto", "flange", "circles")
 SLANT = np.radians(4.0)  # between flange and circles, above which it is a cut at a slant
 DOUBT = np.radians(0.5)  # above which it may be one: circles of IEA 15 MW lean by 2 degrees
 TUBE = 0.004  # of the radius, by which the circles of a root that says so differ at most
+LEAN = 0.05  # of the diameter above a slanted end: planes across the blade lean as its axis does
 LEAST_CIRCLES = 3  # that say where an axis is
 THIN = 0.01  # of a rim's size, which it leaves its plane by at most
 
@@ -87,6 +88,7 @@ def upright(
     low, high = ends(pose, surface)
     if level is not None and not flat:
         low, under = _whole(pose, surface, low + END * (high - low)), low
+        low += LEAN * 2.0 * radius
         said.append(
             f"the root's end is {np.degrees(apart):.1f} degrees off square: the blade begins where "
             f"it is whole, {low - under:.3g} m from its lowest point"

@@ -259,8 +259,7 @@ def test_a_curve_over_span_is_dragged_moved_by_keys_and_undone(opened):
     middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     tab.mouse.move(*middle)
     tab.mouse.down()
-    tab.mouse.move(middle[0], middle[1] - 6, steps=3)
-    tab.mouse.move(middle[0], middle[1] - 12, steps=3)
+    tab.mouse.move(middle[0], middle[1] - 12)
     tab.mouse.up()
     drawn(tab, before + 1)
     tab.wait_for_function("() => location.search.includes('over.twist=0,0,0,')")
@@ -271,7 +270,7 @@ def test_a_curve_over_span_is_dragged_moved_by_keys_and_undone(opened):
     assert tab.evaluate("() => document.activeElement.dataset.curve") == "twist"
     tab.keyboard.press("Control+z")
     tab.wait_for_function("then => location.search === then", arg=dragged)
-    tab.keyboard.press("Control+z")  # all of the drag is one step
+    tab.keyboard.press("Control+z")
     holds(tab, **{"over.twist": None})
 
 

@@ -120,7 +120,7 @@ export default {
           if (baseline) this.fit();
           this.shown += 1;
           this.$el.dataset.shown = this.shown;
-          this.draw();
+          this.paintNow();
         } catch {
           // the server is gone or starts again; the page says so by itself
         }
@@ -361,13 +361,16 @@ export default {
     draw() {
       clearTimeout(this.resting);
       if (this.waiting) return;
-      this.waiting = true;
-      requestAnimationFrame(() => {
-        this.waiting = false;
-        this.render(this.software ? ROUGH : Math.min(window.devicePixelRatio, 2));
-        this.$el.dataset.drawn = this.shown;
-        if (this.software) this.resting = setTimeout(() => this.render(FINE), REST_MS);
-      });
+      this.waiting = requestAnimationFrame(this.paintNow);
+    },
+    // At once, so that a surface that has come is in the next frame and not in the one after it.
+    paintNow() {
+      clearTimeout(this.resting);
+      cancelAnimationFrame(this.waiting);
+      this.waiting = 0;
+      this.render(this.software ? ROUGH : Math.min(window.devicePixelRatio, 2));
+      this.$el.dataset.drawn = this.shown;
+      if (this.software) this.resting = setTimeout(() => this.render(FINE), REST_MS);
     },
     render(ratio) {
       if (!this.size) return;

@@ -1,4 +1,4 @@
-"""Rooms import one way, and heavy libraries come late."""
+"""Rooms import one way, modules and packages in no circle, and heavy libraries come late."""
 
 import ast
 import graphlib
@@ -6,71 +6,54 @@ import sys
 from functools import cache
 from pathlib import Path
 
-import pytest
-
-import bladegen
-
-PACKAGE = Path(bladegen.__file__).parent
+HOME = Path(__file__).parents[1]
 ROOMS = """errors version support curves airfoils shapes definition blade neuralfoil formats
 surface cad measures parametric fitting views exports families studio cli""".split()  # noqa: SIM905
 LIGHT = {*sys.stdlib_module_names, "bladegen", "numpy", "rich", "typer", "yaml"}
-PATHS = sorted(PACKAGE.rglob("*.py"))
-NAMES = {".".join(p.relative_to(PACKAGE.parent).with_suffix("").parts): p for p in PATHS}
-ROOM = {n: n.split(".")[1] for n in NAMES}
-COMPILED = "bladegen.support.compiled"
+PATHS = sorted(HOME.glob("bladegen/**/*.py"))
+NAMES = {".".join(p.relative_to(HOME).with_suffix("").parts): p for p in PATHS}
+ROOM = {name: name.split(".")[1] for name in NAMES}
+RANK = {room: i for i, room in enumerate(ROOMS)}
 
 
 @cache
 def tree(name):
-    """A module's syntax."""
     return ast.parse(NAMES[name].read_text(encoding="utf-8"))
 
 
 def imports(nodes):
-    """The modules that some statements import."""
+    """The modules that some statements import; a package is its `__init__`."""
     for node in nodes:
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            whole = (f"{node.module}.{alias.name}" for alias in node.names)
-            yield from (name if name in NAMES else node.module for name in whole)
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            home = f"{node.module}." if isinstance(node, ast.ImportFrom) else ""
+            for name in (f"{home}{alias.name}" for alias in node.names):
+                found = (name, f"{name}.__init__", f"{home}__init__")
+                yield next((one for one in found if one in NAMES), home[:-1] or name)
 
 
-@cache
 def inside(name):
     """The modules of ours that one imports, anywhere in it."""
     return {*imports(ast.walk(tree(name)))} & {*NAMES} - {name}
 
 
-@cache
-def heads(name):
-    """What a module imports when it is imported."""
-    return {*imports(tree(name).body)}
+def test_rooms_import_rooms_below():
+    rooms = [n for n in NAMES if ROOM[n] in RANK]
+    assert [(n, m) for n in rooms for m in inside(n) if RANK.get(ROOM[m], 99) > RANK[ROOM[n]]] == []
+    assert [n for n in rooms if "import_module" in ast.unparse(tree(n))] == []
 
 
-def is_late(name):
-    """Tell compiled loops, and what makes them and other processes, from all that comes early."""
-    return name in (COMPILED, "bladegen.support.workers") or COMPILED in heads(name)
+def test_neither_modules_nor_packages_import_each_other():
+    for package in {name.rpartition(".")[0] for name in NAMES}:
+        part = {n: n.removeprefix(f"{package}.").split(".")[0] for n in NAMES if f"{package}." in n}
+        graph = graphlib.TopologicalSorter()
+        for name, child in part.items():
+            graph.add(child, *{part[other] for other in inside(name) & {*part}} - {child})
+        graph.prepare()
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if ROOM[n] in ROOMS])
-def test_imports_lead_to_rooms_below(name):
-    assert {ROOM[other] for other in inside(name)} <= {*ROOMS[: ROOMS.index(ROOM[name]) + 1]}
-    assert "importlib.import_module" not in ast.unparse(tree(name))
-    adapters = {"bladegen.openmdao", "bladegen.torch", "bladegen.jax", "bladegen.wisdem"}
-    assert not inside(name) & adapters
-
-
-@pytest.mark.parametrize("package", sorted({name.rpartition(".")[0] for name in NAMES}))
-def test_neither_modules_nor_packages_import_each_other(package):
-    part = {n: n.removeprefix(f"{package}.").split(".")[0] for n in NAMES if f"{package}." in n}
-    graph = graphlib.TopologicalSorter()
-    for name, child in part.items():
-        graph.add(child, *{part[other] for other in inside(name) & set(part)} - {child})
-    graph.prepare()
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_heavy_libraries_are_imported_late(name):
-    assert is_late(name) or {other.split(".")[0] for other in heads(name)} <= LIGHT
-    assert is_late(name) or not any(map(is_late, heads(name) & {*NAMES}))
+def test_heavy_libraries_are_imported_late():
+    heads = {name: {*imports(tree(name).body)} for name in NAMES}
+    late = {"bladegen.support.compiled", "bladegen.support.workers"}
+    late |= {n for n, head in heads.items() if "bladegen.support.compiled" in head}  # compiled
+    edges = [(n, m) for n, head in heads.items() if n not in late for m in head]
+    assert [(n, m) for n, m in edges if m.split(".")[0] not in LIGHT or m in late] == []

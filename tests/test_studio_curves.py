@@ -45,7 +45,7 @@ def test_a_curve_passes_where_it_was_dragged_to(baseline, dragged):
 
 def test_what_is_shown_is_the_blade_that_is_made(baseline, dragged):
     scene, blade = baseline.scene(dragged), baseline.variant(dragged)
-    assert_allclose(scene.sections, blade.sections(baseline.eta), atol=1e-5)
+    assert_allclose(scene.sections, blade.sections(baseline.eta), atol=1e-7)
     assert_allclose(scene.curves.prebend, blade.axis(baseline.eta)[:, 0], atol=1e-9)
 
 

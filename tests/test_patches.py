@@ -123,3 +123,29 @@ def test_faces_without_splines_are_triangles(body, monkeypatch):
     flat = faces_of(body)
     assert flat.patches == ()
     assert np.abs(distances.between(flat, exact)[1]).max() < 1e-4
+
+
+@pytest.mark.parametrize("weight", [1e-300, 0.0, -1.0])
+def test_faces_with_poles_of_no_weight_are_triangles(weight, body, monkeypatch):
+    exact, plain = faces_of(body), face_patches._arrays
+
+    def spoilt(surface):
+        parts = plain(surface)
+        if "weights" in parts:
+            parts["weights"][0] = weight
+        return parts
+
+    monkeypatch.setattr(face_patches, "_arrays", spoilt)
+    found = faces_of(body)
+    assert 0 < len(found.patches) < len(exact.patches)
+    assert all(patch.weights is None for patch in found.patches)
+    assert np.abs(distances.between(found, exact)[1]).max() < 1e-4
+
+
+def test_faces_whose_rims_lie_beside_them_are_triangles(body, monkeypatch):
+    """A damaged file may say that a face ends a turn away from where it is."""
+    exact, plain = faces_of(body), face_patches._rims
+    monkeypatch.setattr(face_patches, "_rims", lambda face: [rim + 1e4 for rim in plain(face)])
+    found = faces_of(body)
+    assert found.patches == ()
+    assert np.abs(distances.between(found, exact)[1]).max() < 1e-4

@@ -23,6 +23,7 @@ SAME = 1e-9  # of a surface's range: bounds that agree to this are its own
 WHOLE = 1e-6  # of the area in (u, v): rims that enclose all but this trim nothing
 ALONG = 32  # points of a rim in each span of a curve
 STRAIGHT = 2048  # and on a straight one, which is none in space
+LIGHTEST = 1e-9  # of the largest weight; a surface with lighter poles may be nowhere
 LEAST, MOST = 512, 20_000  # of one edge
 
 
@@ -84,11 +85,17 @@ def _patch(face: Any) -> dict[str, Any]:
         if surface is None:
             return {}
         parts = _arrays(surface)
+        weights = parts.get("weights", np.ones(1))
+        if not weights.min() > LIGHTEST * weights.max():
+            return {}
         rims = _rims(face)
     except (Standard_Failure, RuntimeError):
         return {}
-    box = np.prod([np.ptp(parts[name]) for name in ("u", "v")])
-    if abs(abs(_area(rims)) / box - 1.0) < WHOLE:
+    sizes = np.array([np.ptp(parts[name]) for name in ("u", "v")])
+    places = np.concatenate(rims) - [parts["u"][0], parts["v"][0]]
+    if not np.all((places > -sizes) & (places < 2.0 * sizes)):  # a turn of a period away
+        return {}
+    if abs(abs(_area(rims)) / np.prod(sizes) - 1.0) < WHOLE:
         return parts
     starts = np.cumsum([0, *(len(rim) for rim in rims)])
     return parts | {"rims": np.concatenate(rims), "starts": starts, "face": face}

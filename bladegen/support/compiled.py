@@ -44,8 +44,8 @@ def compiled(function: Callable[..., Any]) -> Any:
 
 
 def is_kept(function: Any) -> bool:
-    """Tell whether a compiled function lies on the disk, so that it need not be compiled now."""
-    if not NUMBA:
+    """Tell whether a function need not be compiled now: it is plain, or it lies on the disk."""
+    if not hasattr(function, "py_func"):
         return True
     place = getattr(function.stats, "cache_path", None)
     name = f"{function.py_func.__module__.rpartition('.')[2]}.{function.py_func.__qualname__}-"

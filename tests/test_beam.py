@@ -13,7 +13,6 @@ from typer.testing import CliRunner
 
 import bladegen as bg
 from bladegen.blade.layup.beam.modes import POWERS, bending, polynomial, torsion
-from bladegen.blade.layup.beam.openfast import DAMPING, frequencies
 from bladegen.blade.layup.beam.properties import BeamProperties
 from bladegen.cli import commands
 from bladegen.errors import ExportError, MissingLibraryError
@@ -22,6 +21,7 @@ from bladegen.exports.build import build
 from bladegen.exports.options import Options
 from bladegen.exports.products import Products
 from bladegen.exports.registry import FORMATS
+from bladegen.formats.openfast.beams import DAMPING, frequencies
 
 ROOTS = np.array([1.875104069, 4.694091133, 7.854757438])  # of cos x cosh x = -1
 GOLDEN = Path(__file__).parent / "golden" / "iea15mw" / "elastodyn_blade.csv"

@@ -5,10 +5,10 @@ from dataclasses import asdict, dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
-from bladegen.blade.layup.beam.openfast import LATEST
 from bladegen.cad import exchange, solids, step_documents
 from bladegen.errors import ExportError
 from bladegen.exports.provenance import word
+from bladegen.formats.openfast.beams import LATEST
 from bladegen.support.arguments import amount, function, instance, one_of, suggestion, whole
 from bladegen.support.arrays import Array
 from bladegen.support.values import brief

@@ -3,12 +3,13 @@
 from pathlib import Path
 from typing import Any
 
-from bladegen.blade.layup.beam import openfast, table
+from bladegen.blade.layup.beam import table
 from bladegen.blade.layup.layup import Layup
 from bladegen.errors import Finding
 from bladegen.exports import marks
 from bladegen.exports.options import Kind
 from bladegen.exports.products import Products
+from bladegen.formats.openfast import beams
 
 __all__ = ["figures", "write_beam", "write_beamdyn", "write_beamdyn_blade", "write_elastodyn_blade"]
 
@@ -17,14 +18,14 @@ MAIN, BLADE = ".beamdyn.dat", ".beamdyn_blade.dat"
 
 def write_elastodyn_blade(products: Products, path: Path) -> None:
     """Write ElastoDyn's blade file."""
-    lines = openfast.elastodyn_blade(products.beam, products.options.openfast)
+    lines = beams.elastodyn_blade(products.beam, products.options.openfast)
     _write(products, path, lines, ".elastodyn_blade.dat")
     _note_damping(products)
 
 
 def write_beamdyn_blade(products: Products, path: Path) -> None:
     """Write BeamDyn's blade file."""
-    lines = openfast.beamdyn_blade(products.beam, products.options.openfast)
+    lines = beams.beamdyn_blade(products.beam, products.options.openfast)
     _write(products, path, lines, BLADE)
     _note_damping(products)
 
@@ -32,7 +33,7 @@ def write_beamdyn_blade(products: Products, path: Path) -> None:
 def write_beamdyn(products: Products, path: Path) -> None:
     """Write BeamDyn's main input, which names the blade file that stands beside it."""
     blade = f"{path.name[: -len(MAIN)]}{BLADE}"
-    lines = openfast.beamdyn_main(products.beam, blade, products.options.openfast)
+    lines = beams.beamdyn_main(products.beam, blade, products.options.openfast)
     _write(products, path, lines, MAIN)
 
 
@@ -45,7 +46,7 @@ def figures(products: Products) -> dict[str, Any]:
     """Return what a report says of the beam."""
     beam = products.beam
     layup: Layup = products.blade.layup
-    flap, edge, torsion = openfast.frequencies(beam)
+    flap, edge, torsion = beams.frequencies(beam)
     return {
         "stations": len(beam.eta),
         "mass_kg": beam.whole_mass,
@@ -64,7 +65,7 @@ def _write(products: Products, path: Path, lines: list[str], suffix: str) -> Non
 def _note_damping(products: Products) -> None:
     said = Finding(
         "beam",
-        f"damping is no result: {openfast.DAMPING:g} % of critical, as of NREL 5 MW; yours goes in",
+        f"damping is no result: {beams.DAMPING:g} % of critical, as of NREL 5 MW; yours goes in",
     )
     if said not in products.remarks:
         products.remarks.append(said)

@@ -78,7 +78,7 @@ def at_spans(family: Any, names: tuple[str, ...]) -> dict[str, Array]:
             )
         after = int(np.clip(np.searchsorted(eta, where), 1, len(eta) - 1))
         share = (where - eta[after - 1]) / (eta[after] - eta[after - 1])
-        values = np.asarray(family[array][:])[:, after - 1 : after + 1]
+        values = np.asarray(family[array][:, after - 1 : after + 1])
         found[name] = values @ np.array([1.0 - share, share])
     return found
 

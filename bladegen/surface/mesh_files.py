@@ -168,7 +168,8 @@ def read(path: Path) -> Any:
         text = f"{type(error).__name__} {error}"
         raise FileError(str(path), [f"is no mesh that can be read: {text}"]) from None
     if len(vertices) and vertices.shape[1:] != (3,):
-        raise FileError(str(path), [in_space(vertices)])
+        said = f"has points of {vertices.shape[-1]} coordinates, 3 are needed"
+        raise FileError(str(path), [said])
     if kind == "glb":  # y is up there, and regions have vertices of their own
         x, y, z = vertices.T
         made = sound(path, np.stack([x, -z, y], axis=-1), faces)
@@ -178,11 +179,6 @@ def read(path: Path) -> Any:
     if kind == "stl":
         made.merge_vertices()  # solids of one file have vertices of their own
     return made
-
-
-def in_space(points: Array) -> str:
-    """Say that points (n, k) of a file are not places in space."""
-    return f"has points of {points.shape[-1]} coordinates, 3 are needed"
 
 
 def sound(path: Path, vertices: Array, faces: Indices, made: Any = None) -> Any:

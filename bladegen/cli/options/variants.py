@@ -6,7 +6,12 @@ from typing import Any
 from bladegen.errors import BladegenError
 from bladegen.support.arguments import suggestion
 
-__all__ = ["variant"]
+__all__ = ["is_family", "variant"]
+
+
+def is_family(path: Path) -> bool:
+    """Tell whether a path is a family's folder, without opening it."""
+    return (path / "family.json").is_file()
 
 
 def variant(source: str, landmarks: int | None, *, plain: bool) -> Any:
@@ -27,9 +32,9 @@ def variant(source: str, landmarks: int | None, *, plain: bool) -> Any:
         If the family has no such variant, or was made otherwise.
     """
     path = Path(source)
-    if (path / "family.json").is_file():
+    if is_family(path):
         folder, last = path, None
-    elif not path.exists() and (path.parent / "family.json").is_file():
+    elif not path.exists() and is_family(path.parent):
         folder, last = path.parent, path.name
     else:
         return None

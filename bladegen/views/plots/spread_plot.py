@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -53,9 +52,5 @@ def draw(
     for axis in axes.flat:
         if not axis.has_data():
             axis.axis("off")
-    _titled(drawn, title)
-    save_figure(drawn, path)
-
-
-def _titled(drawn: Any, title: str) -> None:
     drawn.suptitle(title, fontsize=10, ha="left", x=0.01)
+    save_figure(drawn, path)

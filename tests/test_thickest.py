@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from bladegen.airfoils import thickest as places
 from bladegen.airfoils.landmarks import landmark_parameters, landmarks
+from bladegen.airfoils.section_curves import SectionCurves
 from bladegen.airfoils.slopes import SplineSlopes
 from bladegen.blade.variants import section_measures
 from bladegen.curves.cubics import Cubics
@@ -76,3 +77,19 @@ def test_thickness_goes_over_from_one_place_to_another_without_a_step(n):
     )
     assert np.abs(np.diff(heights, axis=0)).max() < 3e-6  # a wave's slope times its way
     assert np.ptp(heights, axis=1).max() < 1e-13  # the ways agree
+
+
+def test_a_stretch_after_which_sides_have_changed_places_ends_in_no_warning():
+    """As where a few landmarks of a damaged table are all that is looked at; found by fuzzing."""
+    u = np.array([0.0, 0.129, 0.371, 0.5, 0.629, 0.871, 1.0])
+    points = [
+        (1.007, 0.014),
+        (0.649, 0.107),
+        (0.165, 0.163),
+        (-0.035, -0.006),
+        (0.218, -0.174),
+        (0.321, -0.104),
+        (1.006, -0.007),
+    ]
+    curves = SectionCurves(SplineSlopes.at(u), np.array([points]))
+    assert np.all(np.isfinite(curves.sizing(np.array([0.339])).A))

@@ -241,16 +241,18 @@ class SectionCurves:
         rows, last = np.arange(count), []
         for _ in range(ITERATIONS):
             some = stretched(rows)
-            left = np.log(relative_thickness[rows] * some.chord / some.thickness)
+            short = relative_thickness[rows] * some.chord / some.thickness
+            torn = ~(short > 0.0)  # its sides have changed places
+            left = np.log(np.where(torn, 1.0, short))
             rate = np.ones(len(rows))
             np.divide(missing[rows] - left, steps[rows], out=rate, where=steps[rows] != 0.0)
             missing[rows], steps[rows] = left, left / np.clip(rate, SLOWEST, FASTEST)
             open_ = np.abs(left) > SETTLED
             known = np.abs(left * (rate - slopes[rows])) <= SETTLED
-            turned[rows], slopes[rows] = open_ & (rate < 0.0), rate
+            turned[rows], slopes[rows] = torn | (open_ & (rate < 0.0)), rate
             more[rows] += np.where(open_, steps[rows], 0.0)
             more[turned] = 0.0
-            last.append(rows[open_ & (known | turned[rows])])
+            last.append(rows[turned[rows] | (open_ & known)])
             rows = rows[open_ & ~(known | turned[rows])]
             if not rows.size:
                 break

@@ -234,7 +234,11 @@ def test_an_inclined_chord_line_is_said():
         ("0.5 1e999", "must be finite"),
         ("0.5 0.1 0.2 0.3", "must be x and y"),
         ("0.5,,0.1", "must be x and y"),
-        ("0.95-0.00123", "must be x and y"),
+        ("0.95-0.00123", "put a space between the two"),
+        ("******** 0.05", "stars are what Fortran writes where a number is too wide"),
+        ("0.5 ********", "stars are what"),
+        ("0.5, ****", "stars are what"),
+        ("  ****  -.05", "stars are what"),
         ("1_0 0", "must be x and y"),
     ],
 )
@@ -248,13 +252,24 @@ def test_no_line_between_points_is_passed_over(line, said, at):
     assert said in str(caught.value)
 
 
-@pytest.mark.parametrize("line", ["1.0 0.0x", "1.0 nan", "1.000O 0.0", "0.99,,0.1", "0.95-0.00123"])
+@pytest.mark.parametrize(
+    "line", ["1.0 0.0x", "1.0 nan", "1.000O 0.0", "0.99,,0.1", "0.95-0.00123", "**** 0.0"]
+)
 @pytest.mark.parametrize("at", [1, len(SHARP)])
 def test_a_damaged_first_or_last_point_is_no_title_and_no_text(line, at):
     lines = ["A FOIL", *rows(SHARP)]
     lines[at] = line
     with pytest.raises(FileError, match=f"line {1 + at}: "):
         stood(lines)
+
+
+@pytest.mark.parametrize(
+    "line", ["* 0.5 0.05", "* the nose", "********", "*** 2nd side ***", "** by hand"]
+)
+def test_remarks_may_begin_with_stars(line):
+    lines = ["A FOIL", *rows(SHARP)]
+    lines.insert(60, line)
+    assert_array_equal(stood(lines).points, stood(["A FOIL", *rows(SHARP)]).points)
 
 
 def test_what_is_passed_over_ahead_and_behind_is_said():

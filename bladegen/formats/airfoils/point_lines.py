@@ -36,6 +36,9 @@ _WHOLE_REMARK = ("!", "#", "%", "//", ";", "*")
 _TAG = re.compile(r"\s*</?[A-Za-z][^<>]*>(.*</[A-Za-z]\w*>)?\s*")
 _EMPTY_CELL = re.compile(r"[\d.]\s*[,;]\s*[,;]\s*[-+.\d]")
 _GLUED = re.compile(r"[-+]?[0-9]*\.[0-9]+[-+][0-9]*\.[0-9]+")  # columns of fixed width
+_STARS = re.compile(
+    r"\s*(?:\*{2,}[\s,;]+[-+]?[.\d]|[-+]?[.\d]\S*[\s,;]+\*{2,})\S*(?:[\s,;]+\S+)?\s*"
+)
 _DECIMAL_COMMA = re.compile(r",\d")
 _PLAIN = re.compile(r"\s*([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)\s+([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)\s*")
 _BEGUN = re.compile(r"[-+]?[.,]?\d")  # how a number begins, whole or damaged
@@ -147,8 +150,8 @@ def numbers_of(line: str) -> list[float] | None:
 class _LineError(Exception):
     """A line that can neither be read nor be passed over."""
 
-    def __init__(self, at: int, line: str, demand: str = "must be x and y") -> None:
-        super().__init__(f"line {at}: got {_shown(line)}, {demand}")
+    def __init__(self, at: int, line: str, demand: str = "") -> None:
+        super().__init__(f"line {at}: got {_shown(line)}, {demand or _demand(line)}")
 
 
 @dataclass
@@ -167,8 +170,7 @@ def _read(lines: Sequence[str], split: Split) -> _Lines:
         begun = bool(found.rows)
         plain = _PLAIN.fullmatch(line)  # as nearly all lines are, and much quicker
         if plain is None and (
-            not line.strip()
-            or (begun and (line.lstrip().startswith(_WHOLE_REMARK) or _TAG.fullmatch(line)))
+            not line.strip() or (begun and (_is_remark(line) or _TAG.fullmatch(line)))
         ):
             continue
         values = split(line) if plain is None else [float(word) for word in plain.groups()]
@@ -195,10 +197,24 @@ def _read(lines: Sequence[str], split: Split) -> _Lines:
     return found
 
 
+def _is_remark(line: str) -> bool:
+    """Tell whether all of a line among points is a remark."""
+    return line.lstrip().startswith(_WHOLE_REMARK) and not _STARS.fullmatch(line)
+
+
+def _demand(line: str) -> str:
+    """Return what a line must hold that is neither a point nor a text."""
+    if _STARS.fullmatch(line):
+        return "must be x and y; stars are what Fortran writes where a number is too wide"
+    if _GLUED.match(line.strip()):
+        return "must be x and y; put a space between the two"
+    return "must be x and y"
+
+
 def _damaged(line: str) -> bool:
     """Tell whether a line is a point with one number damaged or something behind it, not a text."""
     words = re.split(r"[\s,;]+", _REMARK.split(line, maxsplit=1)[0].strip())
-    if _GLUED.fullmatch(words[0]):
+    if _GLUED.fullmatch(words[0]) or _STARS.fullmatch(line):
         return True
     if len(words) < 2 or not all(map(_BEGUN.match, words[:2])):
         return False

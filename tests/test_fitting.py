@@ -1,5 +1,6 @@
 """From surfaces to blades: laws of the fit, and blades that come back."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from bladegen.airfoils.section_splines import SectionSplines
 from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import BladegenError, GeometryError
 from bladegen.fitting import measuring
+from bladegen.fitting.clouds.axis import along
 from bladegen.fitting.clouds.coordinates import about
 from bladegen.fitting.clouds.reading import is_cloud, points_of
 from bladegen.fitting.clouds.surface import surface_of_points
@@ -406,3 +408,54 @@ def test_leading_edges_pass_from_nose_to_nose_without_a_jump():
     assert_allclose(curves.chord, 1.0, atol=1e-6)
     assert_allclose(steady.chord, sections.chord, atol=6e-3)  # noses are cut back, not grown
     assert np.all(steady.chord <= sections.chord + 1e-9)
+
+
+def test_a_base_that_slants_along_the_chord_is_a_side():
+    """Else readers refuse the airfoil: its ends lie a tenth of the chord apart in x."""
+    for slant, width in ((0.04, 0.2), (0.15, 0.0)):
+        ring = np.array([[1.0, 0.0], [1.0 - slant, 0.2], [0.2, 0.15], [0.0, 0.0], [0.2, -0.1]])
+        ends = np.concatenate([ring, ring[:1]])
+        fine = np.concatenate(
+            [a + (b - a) * np.linspace(0, 1, 30)[:-1, None] for a, b in itertools.pairwise(ends)]
+        )
+        opened = outlines.edge_of(fine, np.array([1.0, 0.0]))
+        assert opened.cornered
+        assert opened.width == pytest.approx(np.hypot(width, slant if width else 0.0), abs=1e-9)
+
+
+@given(rotations, st.tuples(*[st.floats(-50, 50)] * 3))
+def test_a_cloud_lies_along_the_normal_of_its_root_rim_with_holes_in_it(cloud, angles, move):
+    """The longest axis leans by 1.7 degrees: metres of prebend at the tip."""
+    turn = turned(angles)
+    axes, start, by_rim = along(cloud @ turn + move, "scan")
+    assert by_rim
+    assert np.degrees(np.arccos(min(1.0, (turn @ axes[:, 2])[2]))) < 0.1
+    assert_allclose((np.zeros(3) @ turn + move) @ axes - start, 0.0, atol=0.1)
+
+
+@pytest.fixture(scope="module")
+def cloud(coarse):
+    import trimesh
+
+    mesh = trimesh.Trimesh(coarse.vertices, coarse.faces, process=False)
+    points, _ = trimesh.sample.sample_surface(mesh, 60_000, seed=2)
+    points = points + 0.003 * np.random.default_rng(5).normal(size=points.shape)
+    for y in (2.6, -2.6):  # at the rim
+        points = points[np.linalg.norm(points - [0.0, y, 0.2], axis=1) > 1.0]
+    return points
+
+
+def test_a_hull_of_a_blade_is_told_of(coarse):
+    from scipy.spatial import ConvexHull
+
+    assert not any(
+        "hull" in said for said in found(surfaces.of_mesh(coarse), "it", metres=1.0, unit=None).said
+    )
+    hull = ConvexHull(coarse.vertices)
+    corners = coarse.vertices[hull.simplices]
+    out = np.linalg.det(corners - coarse.vertices.mean(axis=0)) > 0.0
+    faces = np.where(out[:, None], hull.simplices, hull.simplices[:, ::-1])
+    pose = found(
+        surfaces.of_mesh(TriangleMesh(coarse.vertices, faces)), "it", metres=1.0, unit=None
+    )
+    assert any("convex hull of a blade" in said for said in pose.said)

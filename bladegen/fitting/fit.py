@@ -15,7 +15,7 @@ from bladegen.blade.blade import Blade
 from bladegen.blade.edges import AsGiven
 from bladegen.definition.blade_definition import BladeDefinition
 from bladegen.errors import BladegenError, Finding, GeometryError
-from bladegen.fitting.fitted import Fitted
+from bladegen.fitting.fitted import NORMAL, Fitted
 from bladegen.fitting.like import model_like, parameters_of
 from bladegen.fitting.measuring import Cutting, uncrossed
 from bladegen.fitting.placing.finding import FRAMES, UNITS, found
@@ -36,7 +36,7 @@ __all__ = ["fit"]
 
 TOLERANCE = 1e-3  # m
 BEFORE = 1e-3  # m before the root, from which on points are of no blade
-AIRFOILS = 0.4  # of the tolerance, for shapes between stations
+AIRFOILS = 0.4  # of the tolerance and the noise, for shapes between stations
 SAMPLES = 6_000  # points of the source that are held against the blade
 
 
@@ -131,7 +131,8 @@ def fit(
             sections, said = uncrossed(sections, said_of)
             remarks = (*remarks, *said)
         progress("choosing stations")
-        rows = fewest(sections, length, AIRFOILS * tolerance, name=called, progress=progress)
+        allowed = tolerance + NORMAL * pose.scale * noise
+        rows = fewest(sections, length, AIRFOILS * allowed, name=called, progress=progress)
         definition = definition_of(sections, rows, length, name=called, source=text)
         skin = surfaces.of_blade(Blade.from_definition(definition, trailing_edge=AsGiven()))
     except GeometryError as error:

@@ -23,7 +23,7 @@ from bladegen.shapes import affine, grassmann
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arrays import Array
 
-__all__ = ["Fitted", "Place"]
+__all__ = ["NORMAL", "Fitted", "Place"]
 
 BANDS = 20  # of the span, in the table of residuals
 HELD = 99.0  # per cent of the points that are within the tolerance

@@ -108,6 +108,8 @@ class _Nose:
         short = np.maximum(1.0 - self.spline(psi), 0.0)
         some = short <= drop
         some[np.abs(psi) < 0.5 * STEP] = True
+        if not some.any():  # the chord line is beside the nose
+            return np.zeros(1), np.zeros(1)
         return psi[some], short[some]
 
     def lowered(self, psi: float, fall: float) -> Array | None:

@@ -108,5 +108,11 @@ def _clouded(
         raise BladegenError(f"source: got the shape {points.shape}, must be points (m, 3)")
     cloud = surface_of_points(points, name, progress)
     said = f"{len(points)} points, smoothed; they scatter by {cloud.noise:.3g} of their unit"
-    side = Side(name, surfaces.of_mesh(cloud.mesh), measured=measured, remarks=(said,))
+    rim = (
+        "their axis is normal to the rim of the root"
+        if cloud.rimmed
+        else "they show no flat rim of a root: their axis is the longest, which leans where a "
+        "blade is prebent or swept; --root circles takes that of a round root"
+    )
+    side = Side(name, surfaces.of_mesh(cloud.mesh), measured=measured, remarks=(said, rim))
     return side, points, cloud.noise

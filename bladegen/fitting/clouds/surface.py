@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from bladegen.errors import GeometryError
+from bladegen.fitting.clouds.axis import along
 from bladegen.fitting.clouds.coordinates import Ellipses, about
 from bladegen.support.arrays import Array, Indices
 from bladegen.surface.mesh import TriangleMesh
@@ -33,8 +34,6 @@ BLOCKS = 4.0, 60.0  # a radian, and a span
 FAR, FARTHER = 4.685, 0.1  # standard deviations, Tukey's; and of rho, at least: edges are sharp
 ROWS, COLUMNS = 360, 480  # of the mesh
 END = 0.002  # of the span, where caps lie
-SECTORS = 24  # of a rim
-CLOSE = np.radians(5.0)  # between the longest axis and an axis of the file
 
 
 def quiet(_: str) -> None:
@@ -51,10 +50,13 @@ class Cloud:
         Open at both ends, in the cloud's axes and unit.
     noise : float
         Standard deviation of the points about it, in that unit.
+    rimmed : bool
+        Whether its ends are normal to the axis of a root whose rim was seen.
     """
 
     mesh: TriangleMesh
     noise: float
+    rimmed: bool = False
 
 
 def surface_of_points(points: Array, name: str, progress: Progress = quiet) -> Cloud:
@@ -68,7 +70,7 @@ def surface_of_points(points: Array, name: str, progress: Progress = quiet) -> C
     if len(points) < FEWEST:
         raise GeometryError(f"{name}: {len(points)} points, at least {FEWEST} are needed")
     progress(f"smoothing {len(points)} points")
-    axes, start = _along(points, name)
+    axes, start, rimmed = along(points, name)
     own = points @ axes - start
     ellipses = about(own)
     length = float(own[:, 2].max())
@@ -89,31 +91,7 @@ def surface_of_points(points: Array, name: str, progress: Progress = quiet) -> C
         surface.ravel(), np.tile(at_phi, ROWS), np.repeat(at_z * length, COLUMNS)
     )
     noise = _noise(ellipses, own[inside], rho, phi, z, coefficients)
-    return Cloud(TriangleMesh((flat + start) @ axes.T, _faces()), noise)
-
-
-def _along(points: Array, name: str) -> tuple[Array, Array]:
-    """Return axes whose z is along a cloud, root first, and the start of the root in these."""
-    some = points[:: max(1, len(points) // 100_000)]
-    away = some - some.mean(axis=0)
-    sizes, axes = np.linalg.eigh(away.T @ away)
-    if not sizes[2] > 9.0 * sizes[1]:
-        raise GeometryError(
-            f"{name}: no blade: the points spread as far across as along; must be a slender body"
-        )
-    direction = axes[:, 2]
-    k = int(np.argmax(np.abs(direction)))
-    if abs(direction[k]) > np.cos(CLOSE):
-        direction = np.eye(3)[k] * np.sign(direction[k])
-    reach = some @ direction
-    low, high = np.percentile(reach, [5.0, 95.0])
-    spread = [np.var(some[side] @ axes[:, 0]) for side in (reach < low, reach > high)]
-    if spread[1] > spread[0]:
-        direction = -direction
-    x = np.cross([0.0, 1.0, 0.0] if abs(direction[1]) < 0.9 else [1.0, 0.0, 0.0], direction)
-    x /= np.linalg.norm(x)
-    frame = np.stack([x, np.cross(direction, x), direction], axis=1)
-    return frame, np.array([0.0, 0.0, float((points @ direction).min())])
+    return Cloud(TriangleMesh((flat + start) @ axes.T, _faces()), noise, rimmed)
 
 
 def _cells(rho: Array, phi: Array, z: Array) -> tuple[tuple[Array, Array, Array], Array]:

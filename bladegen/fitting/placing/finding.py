@@ -28,6 +28,7 @@ INSIDE = 0.05  # of the root's diameter, by which an axis of the file may miss i
 LEAST_TURN = np.radians(30.0)  # between the chord near the tip and the file's axis of no twist
 FEW, OPENED = 5, 0.2  # points of an outline, and of its length that a gap may have
 AROUND, FOLDED = 401, 3  # points of an outline, and outlines that may cross themselves at ends
+FILLED = 0.9999  # of the hull's volume, that a mesh has which is one
 ENOUGH = 0.5  # of the planes that must cut an outline
 
 
@@ -88,9 +89,25 @@ def found(
         pose = _untwisted(pose, surface)
         said.append("the file's axes are not the blade's: twist is zero at 90 % of the span")
         said += [doubt] if doubt else []
+    if _is_hull(surface.mesh):
+        said.append(
+            "it is the convex hull of a blade: hollows are filled, and its sections are no airfoils"
+        )
     if pose.mirrored:
         said.append("it is a mirror image: its rotor turns anticlockwise seen from upwind")
     return replace(pose, said=tuple(said))
+
+
+def _is_hull(mesh: TriangleMesh) -> bool:
+    """Tell whether a mesh is its own convex hull, as some programs export what they join."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        hull = ConvexHull(mesh.vertices[np.unique(mesh.faces)])
+    except QhullError:
+        return False
+    corners = mesh.vertices[mesh.faces] - mesh.vertices.mean(axis=0)
+    return bool(abs(np.linalg.det(corners).sum()) / 6.0 > FILLED * hull.volume)
 
 
 def _lengthwise(mesh: TriangleMesh) -> Pose:

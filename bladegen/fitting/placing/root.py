@@ -73,7 +73,7 @@ def upright(
         said.append("the root is no circle: the pitch axis goes through its middle")
     doubt = ""
     if flat and not flanged:
-        said.append("the pitch axis is along the points, which have no flange")
+        said.append("the pitch axis is that of the points")
     elif flat:
         said.append("the pitch axis is normal to the root's flange")
         if tube and apart > DOUBT:

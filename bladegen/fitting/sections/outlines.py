@@ -25,6 +25,7 @@ __all__ = [
 
 REAR = 0.25  # of the extent: corners farther ahead are no trailing edge
 CORNER = np.radians(25.0)  # facets of a round edge turn by less
+SLANTED = 0.06  # of the extent along the chord: a base slants by less; readers want below a tenth
 SLIGHT, ALONE = np.radians(3.0), 5.0  # or more than this, and so many times the turns around
 AROUND = 8  # points on either side
 WINDOWS = (1e-5, 1e-4, 1e-3)  # of the extent, over which a corner may be rounded
@@ -94,6 +95,9 @@ def _opened(outline: Array, corners: Indices, reach: Array) -> Outline:
     front = int(np.argmin(reach))
     order = np.sort((corners - front) % len(outline))  # from the nose along the pressure side
     first, last = (int(order[0]) + front) % len(outline), (int(order[-1]) + front) % len(outline)
+    slant = reach[first] - reach[last]
+    if abs(slant) > SLANTED * float(np.ptp(reach)):  # a side, not a base
+        first = last = first if slant > 0.0 else last
     if first == last:
         return Outline(_rolled(outline, first, closed=True), True)
     rolled = np.roll(outline, -last, axis=0)

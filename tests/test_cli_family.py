@@ -150,7 +150,7 @@ def test_variants_are_blades_of_commands(tmp_path):
         (("preview", folder / "nrel5mw-00002"), "has no variant 'nrel5mw-00002', but 0 to 1 and"),
         ((*one, "--landmarks", "201"), "with 401 landmarks; leave options out"),
         ((*one, "--path", "geodesic"), "a variant is made as its family was"),
-        (("family", "nrel5mw", "-o", "s3://bucket/family"), "must be a folder of this machine"),
+        (("build", "nrel5mw", "-o", "s3://bucket/out"), "must be a folder of this machine"),
     ):
         result = command(*words)
         assert isinstance(result.exception, BladegenError)

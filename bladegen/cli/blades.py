@@ -68,12 +68,12 @@ def info(
     Of any file that bladegen wrote it shows what it is made from; of a family's folder, what is
     in it and how it spreads.
     """
-    from bladegen.cli.options.variants import is_family
+    from bladegen.cli.options.variants import is_family, place
     from bladegen.formats.airfoils.contours import thickness
     from bladegen.formats.reading import holds_blade, is_read, read
     from bladegen.views.tables import definition_figures, station_rows
 
-    path = Path(blade)
+    path = place(blade)
     if is_family(path):
         _print_family(path, where, plot, as_json)
         return

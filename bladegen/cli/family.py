@@ -12,9 +12,9 @@ from bladegen.cli.options.common import (
     LANDMARKS,
     MAKING,
     BladeName,
+    FamilyTarget,
     Making,
     Mirror,
-    Target,
     suffixes_of,
 )
 from bladegen.cli.options.groups import grouped
@@ -57,7 +57,7 @@ FamilyFormats = Annotated[
 @grouped
 def family(
     blade: BladeName,
-    output: Target,
+    output: FamilyTarget,
     count: Annotated[int | None, typer.Option(help="How many variants; 100 if not given.")] = None,
     seed: Annotated[int, typer.Option(help="Of the draws; the same seed, the same family.")] = 0,
     design: Annotated[
@@ -135,6 +135,7 @@ def family(
     from bladegen.families.family import family as plan
     from bladegen.families.order import Order
     from bladegen.families.run import run
+    from bladegen.families.storage.places import located
     from bladegen.shapes.shape_space import ShapeSpace
     from bladegen.support.compiled import is_kept
 
@@ -167,7 +168,7 @@ def family(
     )
     order = Order(
         planned,
-        output,
+        located(output),
         suffixes,
         "float64" if double else "float32",
         producing.options(suffixes),
@@ -224,6 +225,7 @@ def _summary(order: Any, made: int) -> None:
     """Draw the contact sheet and say what the folder holds."""
     from bladegen.families.dataset.writing import CARD
     from bladegen.families.folder import read_manifest
+    from bladegen.families.storage.places import bytes_in, replacing
     from bladegen.views.contact_sheet import contact_sheet
     from bladegen.views.tables import digits, megabytes
 
@@ -232,13 +234,13 @@ def _summary(order: Any, made: int) -> None:
     manifest = read_manifest(order.place, [*columns, *shown])
     sheet = order.target / "contact.png"
     family = order.family
-    remark = contact_sheet(
-        order.place.sections, manifest["name"], manifest["valid"], family.blade, family.eta, sheet
-    )
+    drawn = manifest["name"], manifest["valid"], family.blade, family.eta
+    with replacing(sheet) as temporary:
+        remark = contact_sheet(order.place.sections, *drawn, temporary)
     valid = manifest["valid"]
     volume = manifest["volume_m3"][valid]
     smallest, largest = (digits(v, 1) for v in (min(volume, default=0), max(volume, default=0)))
-    size = sum(file.stat().st_size for file in order.target.rglob("*") if file.is_file())
+    size = bytes_in(order.target)
     rows = [
         ["variants", f"{len(valid)}, {made} of them made now"],
         ["sound", f"{int(valid.sum())} of {len(valid)}"],

@@ -15,8 +15,6 @@ run leaves without its part is written again.
 """
 
 import json
-import os
-import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -30,7 +28,9 @@ from bladegen.errors import ExportError, FamilyError
 from bladegen.families.family import BLOCK
 from bladegen.families.forecasts import NoRoomError
 from bladegen.families.identity import require_same
-from bladegen.support.files import alone, folder, replacing
+from bladegen.families.storage import places
+from bladegen.families.storage.places import flush, folder, in_store, replacing
+from bladegen.families.storage.tables import columns_of, parquet, write_table
 
 __all__ = ["GRAPH", "FamilyFolder", "read_manifest"]
 
@@ -41,7 +41,10 @@ GRAPH = {"normals": 4, "areas": 3}  # arrays beside the sections, and how many d
 
 @dataclass(frozen=True)
 class FamilyFolder:
-    """A folder that holds a family, or shall, in blocks of so many variants."""
+    """A folder that holds a family, or shall, in blocks of so many variants.
+
+    Of this machine, or of an object store (`storage.places.located`).
+    """
 
     path: Path
     block: int = BLOCK
@@ -110,7 +113,7 @@ class FamilyFolder:
         ExportError
             If another run holds it, or it cannot be written.
         """
-        return alone(folder(self.path), "family")
+        return places.alone(self.path, "family")
 
     @contextmanager
     def undone_if_refused(self) -> Iterator[None]:
@@ -123,7 +126,7 @@ class FamilyFolder:
         except NoRoomError:
             if fresh:
                 for entry in (self.store, self.blades, self.parts):
-                    shutil.rmtree(entry, ignore_errors=True)
+                    places.removed(entry)
                 self.description.unlink(missing_ok=True)
             raise
 
@@ -153,11 +156,9 @@ class FamilyFolder:
         beside: Mapping[str, tuple[tuple[str, ...], tuple[int, ...]]] = MappingProxyType({}),
     ) -> None:
         """Make the empty store of sections, and of arrays `beside` them, if it is not there."""
-        import zarr
-
         own = {"sections": (("span", "landmark", "xyz"), (len(eta), len(u), 3))}
         try:
-            group = zarr.open_group(self.store, mode="a", zarr_format=3, use_consolidated=False)
+            group = places.group(self.store, "a", zarr_format=3, use_consolidated=False)
             group.attrs.update({"unit": "m", "axes": "variant, span, landmark, xyz"})
             self._require(group, count, own, dtype)
             self._require(group, count, beside)
@@ -165,7 +166,10 @@ class FamilyFolder:
                 if name not in group:
                     group.create_array(name, data=np.array(values), dimension_names=(dimension,))
         except OSError as error:
-            raise ExportError(f"{self.store}: cannot be written: {error.strerror}") from None
+            raise self._unwritten(error) from None
+
+    def _unwritten(self, error: OSError) -> ExportError:
+        return ExportError(f"{self.store}: cannot be written: {error.strerror or error}")
 
     def make_beside(
         self, count: int, beside: Mapping[str, tuple[tuple[str, ...], tuple[int, ...]]]
@@ -174,7 +178,7 @@ class FamilyFolder:
         try:
             self._require(self._arrays, count, beside)
         except OSError as error:
-            raise ExportError(f"{self.store}: cannot be written: {error.strerror}") from None
+            raise self._unwritten(error) from None
 
     def _require(
         self,
@@ -201,28 +205,21 @@ class FamilyFolder:
 
     @property
     def _arrays(self) -> Any:
-        import zarr
-
-        return zarr.open_group(self.store, mode="r+", use_consolidated=False)
+        return places.group(self.store, "r+", use_consolidated=False)
 
     def write_block(
         self, number: int, arrays: Mapping[str, Any], rows: Mapping[str, Any], part: Path
     ) -> None:
         """Write a block's arrays of the store, then its part: rows of the manifest."""
-        import pyarrow.parquet as pq
-
         start, group = number * self.block, self._arrays
         try:
             for name, values in arrays.items():
                 group[name][start : start + len(values)] = values
-                _flush(self.store / name / "c" / str(number))
+                if not in_store(self.store):
+                    flush(self.store / name / "c" / str(number))
         except OSError as error:
-            raise ExportError(
-                f"{self.store}: cannot be written: {error.strerror or error}"
-            ) from None
-        with replacing(part) as temporary:
-            pq.write_table(_table(rows), temporary, compression="zstd")
-            _flush(temporary)
+            raise self._unwritten(error) from None
+        write_table(part, rows)
 
     @property
     def store(self) -> Path:
@@ -236,64 +233,20 @@ class FamilyFolder:
         numbers = range(-(-count // self.block))
         if not self.manifest.exists():
             with replacing(self.manifest) as temporary:
-                schema = pq.read_schema(self.part(0))
+                with parquet(self.part(0)) as first:
+                    schema = first.schema_arrow
                 with pq.ParquetWriter(temporary, schema, compression="zstd") as writer:
                     for number in numbers:
-                        with pq.ParquetFile(self.part(number)) as part:
+                        with parquet(self.part(number)) as part:
                             writer.write_table(part.read())
-                _flush(temporary)
-        shutil.rmtree(self.parts, ignore_errors=True)
+                flush(temporary)
+        places.removed(self.parts)
+        if in_store(self.path):
+            return  # objects are whole
         for left in [*self.path.glob(f"{ZARR}/**/*.partial"), *self.blades.glob(".*")]:
             left.unlink(missing_ok=True)  # what killed runs were writing
 
 
 def read_manifest(place: FamilyFolder, columns: Sequence[str]) -> dict[str, Any]:
     """Return columns of a manifest: texts as lists, numbers as arrays."""
-    import pyarrow.parquet as pq
-
-    with pq.ParquetFile(place.manifest) as file:  # `read_table` would load pandas
-        table = file.read(columns=list(columns))
-    listed = {name: table.column(name).to_pylist() for name in columns}
-    return {
-        name: values if table.schema.field(name).type == "string" else np.array(values)
-        for name, values in listed.items()
-    }
-
-
-def _table(rows: Mapping[str, Any]) -> Any:
-    """Return columns as an Arrow table; matrices become lists of fixed length."""
-    import pyarrow as pa
-
-    columns = {}
-    for name, values in rows.items():
-        column = np.asarray(values)
-        columns[name] = _column(column.reshape(-1))
-        if column.ndim == 2:
-            columns[name] = pa.FixedSizeListArray.from_arrays(columns[name], column.shape[1])
-    return pa.table(columns)
-
-
-def _column(values: Any) -> Any:
-    """Return an Arrow array (n,) of numbers or texts; `pyarrow.array` would load pandas."""
-    import pyarrow as pa
-
-    if values.dtype.kind in "US":
-        texts = [text.encode() for text in values.tolist()]
-        offsets = np.cumsum([0, *map(len, texts)], dtype=np.int32)
-        parts = pa.py_buffer(offsets), pa.py_buffer(b"".join(texts))
-        return pa.StringArray.from_buffers(len(texts), *parts)
-    data = np.packbits(values, bitorder="little") if values.dtype == bool else values
-    kind = pa.from_numpy_dtype(values.dtype)
-    return pa.Array.from_buffers(
-        kind, len(values), [None, pa.py_buffer(np.ascontiguousarray(data))]
-    )
-
-
-def _flush(path: Path) -> None:
-    """See that a file, or all files below a folder, have reached the disk."""
-    for file in [path] if path.is_file() else sorted(p for p in path.rglob("*") if p.is_file()):
-        handle = os.open(file, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
+    return columns_of(place.manifest, columns)

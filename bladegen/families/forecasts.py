@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bladegen.errors import FamilyError
+from bladegen.families.storage.places import in_store
 
 __all__ = ["Forecast", "NoRoomError", "duration", "free_bytes", "require_room", "size"]
 
@@ -27,21 +28,24 @@ class Forecast:
     ----------
     variants : int
         How many.
-    needed, free : int
-        Bytes that they take, and that the disk has.
+    needed : int
+        Bytes that they take.
+    free : int, optional
+        Bytes that the disk has; none of an object store.
     seconds : float
         How long they take.
     """
 
     variants: int
     needed: int
-    free: int
+    free: int | None
     seconds: float
 
     def __str__(self) -> str:
+        where = "" if self.free is None else f" on the disk, which has {size(self.free)} free,"
         return (
-            f"{self.variants} variants: about {size(self.needed)} on the disk, which has "
-            f"{size(self.free)} free, and about {duration(self.seconds)}"
+            f"{self.variants} variants: about {size(self.needed)}{where} and about "
+            f"{duration(self.seconds)}"
         )
 
 
@@ -54,7 +58,7 @@ def require_room(target: Path, variants: int, needed: int, *, at_least: bool = F
         If it has not.
     """
     free = free_bytes(target)
-    if needed > free:
+    if free is not None and needed > free:
         roughly = "at least" if at_least else "about"
         raise NoRoomError(
             f"{target}: {variants} variants take {roughly} {size(needed)}, the disk has "
@@ -63,8 +67,10 @@ def require_room(target: Path, variants: int, needed: int, *, at_least: bool = F
         )
 
 
-def free_bytes(target: Path) -> int:
-    """Return how many bytes are free where a folder is, or would be made."""
+def free_bytes(target: Path) -> int | None:
+    """Return how many bytes are free where a folder is, or would be made; None in a store."""
+    if in_store(target):
+        return None
     there = target.absolute()
     while not there.exists() and there != there.parent:
         there = there.parent

@@ -16,6 +16,7 @@ from bladegen.families.dataset.graphs import surface
 from bladegen.families.folder import FLOAT_TYPES, GRAPH
 from bladegen.families.manifest_rows import drawn_again, rows_of
 from bladegen.families.order import Order
+from bladegen.families.storage.places import filled
 from bladegen.support.arrays import Indices
 from bladegen.support.files import digest_of
 from bladegen.support.threads import one_thread
@@ -70,17 +71,18 @@ def _faults(order: Order, block: Block) -> dict[int, str]:
 def _exported(order: Order, block: Block, suffix: str, faults: dict[int, str]) -> dict[str, Any]:
     """Write the sound variants in one format; return the columns that say so."""
     names, digests, problems = [], [], []
-    for place, valid in zip(block.index, block.valid, strict=True):
-        name, digest, problem = "", "", ""
-        if valid and place in faults:
-            problem = faults[place]
-        elif valid:
-            path = order.place.blades / f"{order.family.name(int(place))}{suffix}"
-            made, problem = _export(order, order.family.named(block, int(place)), path)
-            name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
-        names.append(name)
-        digests.append(digest)
-        problems.append(problem)
+    with filled(order.place.blades) as room:
+        for place, valid in zip(block.index, block.valid, strict=True):
+            name, digest, problem = "", "", ""
+            if valid and place in faults:
+                problem = faults[place]
+            elif valid:
+                path = room / f"{order.family.name(int(place))}{suffix}"
+                made, problem = _export(order, order.family.named(block, int(place)), path)
+                name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
+            names.append(name)
+            digests.append(digest)
+            problems.append(problem)
     kind = suffix.lstrip(".")
     return {f"{kind}_file": names, f"{kind}_sha256": digests, f"{kind}_problem": problems}
 

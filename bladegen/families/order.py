@@ -13,6 +13,7 @@ from bladegen.families.family import BLOCK, Family
 from bladegen.families.folder import FLOAT_TYPES, GRAPH, FamilyFolder
 from bladegen.families.identity import fingerprint, identity
 from bladegen.families.labels.labelling import Labelling, checked
+from bladegen.families.storage.places import located
 from bladegen.formats.writing import MIRRORED
 from bladegen.support.arrays import Array
 from bladegen.surface.fitting import fitted
@@ -30,8 +31,9 @@ class Order:
     ----------
     family : Family
         The variants.
-    target : Path
-        The folder; workers elsewhere must see it under the same name.
+    target : Path or str
+        The folder, or a place in an object store ("s3://bucket/family"); workers elsewhere must
+        see it under the same name.
     formats : tuple of str
         Suffixes of files for each sound variant; none by default.
     dtype : str
@@ -53,6 +55,7 @@ class Order:
     labels: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "target", located(self.target))
         if self.dtype not in FLOAT_TYPES:
             raise FamilyError(f"dtype: got {self.dtype!r}, allowed are {', '.join(FLOAT_TYPES)}")
         for suffix in self.suffixes:

@@ -21,8 +21,8 @@ from bladegen.families.forecasts import Forecast, free_bytes, require_room
 from bladegen.families.making import Made, make_block, sections_of
 from bladegen.families.order import Order
 from bladegen.families.processes import in_processes, in_threads, on_cluster
+from bladegen.families.storage.places import folder, told
 from bladegen.support.arguments import whole
-from bladegen.support.files import folder
 
 __all__ = ["run"]
 
@@ -71,7 +71,7 @@ def run(
     place, family = order.place, order.family
     if not (resume or append):
         require_room(order.target, len(family), _bytes(order, len(family)), at_least=True)
-    with place.alone(), place.undone_if_refused():
+    with told(order.target), place.alone(), place.undone_if_refused():
         require_none(place)
         if append:
             grow(order)

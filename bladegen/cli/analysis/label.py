@@ -1,6 +1,5 @@
 """`bladegen label`: labels of a family that is there already."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -17,7 +16,7 @@ __all__ = ["label"]
 @grouped
 def label(
     family: Annotated[
-        Path, typer.Argument(metavar="FOLDER", help="A family that `bladegen family` made.")
+        str, typer.Argument(metavar="FOLDER", help="A family that `bladegen family` made.")
     ],
     labels: Annotated[
         list[str],

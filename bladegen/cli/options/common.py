@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from bladegen.cli.options.targets import Target, ending_in
+from bladegen.cli.options.targets import FamilyTarget, Target, ending_in
 from bladegen.errors import BladegenError
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "MAKING",
     "Airfoils",
     "BladeName",
+    "FamilyTarget",
     "Formats",
     "Json",
     "Landmarks",

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["Target", "each_ending_in", "ending_in"]
+__all__ = ["FamilyTarget", "Target", "each_ending_in", "ending_in"]
 
 STORE = re.compile(r"[a-z][a-z0-9+.-]+:/", re.IGNORECASE)  # s3://bucket, as a Path shows it
 
@@ -40,13 +40,20 @@ def each_ending_in(*suffixes: str) -> Callable[..., list[Path] | None]:
 def _folder(param: typer.CallbackParam, value: Path) -> Path:
     """Refuse a file's name, or an object store, where a folder is meant."""
     from bladegen.errors import ExportError
-    from bladegen.exports.registry import FORMATS
 
     if STORE.match(str(value)):
         raise ExportError(
-            f"{param.opts[-1]}: got {value}, must be a folder of this machine; copy it from there "
-            "(aws s3 sync, gsutil rsync); xarray.open_zarr opens a family where it lies"
+            f"{param.opts[-1]}: got {value}, must be a folder of this machine; only `bladegen "
+            "family` writes into object stores; copy it from there (aws s3 sync, gsutil rsync)"
         )
+    return _no_file(param, value)
+
+
+def _no_file(param: typer.CallbackParam, value: Path) -> Path:
+    """Refuse a file's name where a folder is meant."""
+    from bladegen.errors import ExportError
+    from bladegen.exports.registry import FORMATS
+
     suffix = next((one for one in FORMATS if value.name.lower().endswith(one)), "")
     if suffix and not value.is_dir():
         raise ExportError(
@@ -56,6 +63,22 @@ def _folder(param: typer.CallbackParam, value: Path) -> Path:
     return value
 
 
+def _family(param: typer.CallbackParam, value: str) -> str:
+    """Refuse a file's name where a family's folder is meant."""
+    _no_file(param, Path(value))
+    return value
+
+
+FamilyTarget = Annotated[
+    str,
+    typer.Option(
+        "-o",
+        "--output",
+        metavar="PATH",
+        help="Folder for the family, or a place in an object store: s3://BUCKET/FOLDER, gs://...",
+        callback=_family,
+    ),
+]
 Target = Annotated[
     Path, typer.Option("-o", "--output", help="Folder for the files.", callback=_folder)
 ]

@@ -6,12 +6,26 @@ from typing import Any
 from bladegen.errors import BladegenError
 from bladegen.support.arguments import suggestion
 
-__all__ = ["is_family", "variant"]
+__all__ = ["is_family", "place", "variant"]
 
 
 def is_family(path: Path) -> bool:
     """Tell whether a path is a family's folder, without opening it."""
-    return (path / "family.json").is_file()
+    if isinstance(path, Path):  # nothing of families is loaded
+        return (path / "family.json").is_file()
+    from bladegen.families.storage.places import told
+
+    with told(path):
+        return (path / "family.json").is_file()
+
+
+def place(source: str) -> Path:
+    """Return where a source lies, if it is the name of something there."""
+    if "://" not in source:  # nothing of families is loaded for a plain name
+        return Path(source)
+    from bladegen.families.storage.places import located
+
+    return located(source)
 
 
 def variant(source: str, landmarks: int | None, *, plain: bool) -> Any:
@@ -31,7 +45,7 @@ def variant(source: str, landmarks: int | None, *, plain: bool) -> Any:
     BladegenError
         If the family has no such variant, or was made otherwise.
     """
-    path = Path(source)
+    path = place(source)
     if is_family(path):
         folder, last = path, None
     elif not path.exists() and is_family(path.parent):

@@ -16,7 +16,8 @@ from bladegen.families.folder import GRAPH, FamilyFolder
 from bladegen.families.identity import require_same
 from bladegen.families.labels.figures import STORED
 from bladegen.families.order import Order
-from bladegen.support.files import folder, replacing
+from bladegen.families.storage.places import folder, replacing
+from bladegen.families.storage.tables import parquet
 
 __all__ = ["grow", "settle"]
 
@@ -79,9 +80,8 @@ def settle(place: FamilyFolder, count: int) -> None:
 
 
 def _rows(manifest: Path) -> int:
-    import pyarrow.parquet as pq
-
-    return int(pq.read_metadata(manifest).num_rows)
+    with parquet(manifest) as file:
+        return int(file.metadata.num_rows)
 
 
 def _keep_parts(place: FamilyFolder) -> None:
@@ -91,7 +91,7 @@ def _keep_parts(place: FamilyFolder) -> None:
     if not place.manifest.exists():
         return
     folder(place.parts)
-    with pq.ParquetFile(place.manifest) as file:
+    with parquet(place.manifest) as file:
         for number in range(file.num_row_groups):
             rows: Any = file.read_row_group(number)
             if len(rows) == place.block:

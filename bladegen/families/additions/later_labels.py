@@ -8,7 +8,6 @@ anywhere goes on.
 """
 
 import json
-import shutil
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
@@ -30,8 +29,9 @@ from bladegen.families.identity import require_current
 from bladegen.families.labels.figures import FIGURES, LABELS
 from bladegen.families.labels.labelling import Labelling, checked
 from bladegen.families.processes import in_threads, on_cluster
+from bladegen.families.storage.places import removed, replacing, told
+from bladegen.families.storage.tables import parquet
 from bladegen.support.arguments import whole
-from bladegen.support.files import replacing
 from bladegen.support.threads import one_thread
 
 __all__ = ["add_labels"]
@@ -82,7 +82,7 @@ def add_labels(
     wanted = checked(labels, family.planned)
     _ = family[int(np.argmax(family.valid))]  # is held against its stored sections
     place = FamilyFolder(family.path, family["sections"].shards[0])
-    with place.alone():
+    with told(place.path), place.alone():
         added = _begun(family, place, wanted)
         if not added:
             return 0
@@ -169,14 +169,14 @@ class Addition:
         """Put the labels into manifest, description, dataset and card."""
         place, family = self.place, self.family
         _join(place, self._part)
-        told = json.loads(place.description.read_text(encoding="utf-8"))
-        labels = told.get("labels", {}) | self.labelling.settings
-        told["labels"] = {label: labels[label] for label in LABELS if label in labels}
+        found = json.loads(place.description.read_text(encoding="utf-8"))
+        labels = found.get("labels", {}) | self.labelling.settings
+        found["labels"] = {label: labels[label] for label in LABELS if label in labels}
         with replacing(place.description) as temporary:
-            temporary.write_text(json.dumps(told, indent=2) + "\n", encoding="utf-8")
-        store.add_labels(place.store, place.manifest, told, self.labelling.labels)
-        write_card(place, told, family.attributes)
-        shutil.rmtree(place.labels)
+            temporary.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+        store.add_labels(place.store, place.manifest, found, self.labelling.labels)
+        write_card(place, found, family.attributes)
+        removed(place.labels)
 
 
 def _begun(family: LoadedFamily, place: FamilyFolder, wanted: Sequence[str]) -> tuple[str, ...]:
@@ -211,14 +211,15 @@ def _join(place: FamilyFolder, part: Callable[[int], Path]) -> None:
     import pyarrow.parquet as pq
 
     names = [one.name for label in LABELS for one in FIGURES[label]]
-    with pq.ParquetFile(place.manifest) as file:
-        if set(pq.read_schema(part(0)).names) <= set(file.schema_arrow.names):
-            return
+    with parquet(place.manifest) as file:
+        with parquet(part(0)) as first:
+            if set(first.schema_arrow.names) <= set(file.schema_arrow.names):
+                return
         with replacing(place.manifest) as temporary:
             writer = None
             for number in range(file.num_row_groups):
                 table = file.read_row_group(number)
-                with pq.ParquetFile(part(number)) as added:
+                with parquet(part(number)) as added:
                     for field, column in zip(added.schema_arrow, added.read().columns, strict=True):
                         if field.name != "index":
                             table = table.append_column(field, column)

@@ -6,7 +6,7 @@ from typing import Any
 
 from bladegen.errors import FamilyError
 from bladegen.families.folder import FamilyFolder
-from bladegen.support.files import folder, replacing
+from bladegen.families.storage.places import folder, replacing
 
 __all__ = ["note", "require_none", "unfinished"]
 

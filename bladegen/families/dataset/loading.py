@@ -24,10 +24,11 @@ from bladegen.families.dataset.store import column_values, opened
 from bladegen.families.dataset.variables import parameter, variables
 from bladegen.families.family import Family
 from bladegen.families.identity import require_current
+from bladegen.families.storage.places import content, in_store, located, told
+from bladegen.families.storage.tables import parquet
 from bladegen.shapes.shape_space import ShapeSpace
 from bladegen.support.arguments import one_of, suggestion, whole
 from bladegen.support.arrays import Array, Indices, readonly
-from bladegen.support.files import content_of
 
 __all__ = ["LoadedFamily", "load_family"]
 
@@ -82,9 +83,8 @@ class LoadedFamily:
     @cached_property
     def columns(self) -> dict[str, str]:
         """Columns of the manifest by the names of their arrays."""
-        import pyarrow.parquet as pq
-
-        columns = pq.read_schema(self.path / "manifest.parquet").names
+        with parquet(self.path / "manifest.parquet") as file:
+            columns = file.schema_arrow.names
         return {one.name: one.column for one in variables(columns, self.factors)}
 
     @cached_property
@@ -117,9 +117,7 @@ class LoadedFamily:
         if name in self.store:
             return self.store[name]
         if name in self.columns:
-            import pyarrow.parquet as pq
-
-            with pq.ParquetFile(self.path / "manifest.parquet") as file:
+            with parquet(self.path / "manifest.parquet") as file:
                 return column_values(file.read([self.columns[name]]).column(0))
         near = suggestion(name, self.names)
         raise FamilyError(f"{self.path}: holds no {name!r}, but {', '.join(self.names)}{near}")
@@ -131,9 +129,7 @@ class LoadedFamily:
 
     def table(self) -> Any:
         """Return the manifest, a row a variant, as a `pyarrow.Table`."""
-        import pyarrow.parquet as pq
-
-        with pq.ParquetFile(self.path / "manifest.parquet") as file:
+        with parquet(self.path / "manifest.parquet") as file:
             return file.read()
 
     @cached_property
@@ -254,7 +250,8 @@ class LoadedFamily:
             import xarray
         except ImportError as error:
             raise MissingLibraryError(error) from None
-        return xarray.open_zarr(self.path / "sections.zarr")
+        store = self.path / "sections.zarr"
+        return xarray.open_zarr(str(store) if in_store(store) else store)
 
 
 def load_family(
@@ -265,7 +262,7 @@ def load_family(
     Parameters
     ----------
     path : str or Path
-        Its folder.
+        Its folder, of this machine or of an object store ("s3://bucket/family").
     blade : Blade, optional
         The baseline, for blades by index, where it is no bundled one.
     space : ShapeSpace, optional
@@ -276,18 +273,20 @@ def load_family(
     FamilyError
         If the folder holds no family that is whole.
     """
-    folder = Path(path)
+    folder = located(path)
     folder = folder.parent if folder.name in ("sections.zarr", "manifest.parquet") else folder
-    told, manifest = folder / "family.json", folder / "manifest.parquet"
-    if not told.is_file():
+    described, manifest = folder / "family.json", folder / "manifest.parquet"
+    with told(folder):
+        begun, whole_one = described.is_file(), manifest.is_file()
+    if not begun:
         raise FamilyError(f"{path}: holds no family; `bladegen family BLADE -o {path}` makes one")
-    if not manifest.is_file():
+    if not whole_one:
         raise FamilyError(
             f"{path}: its family is not whole; the same command with --resume goes on"
         )
     try:
-        identity = json.loads(content_of(told, MOST))
+        identity = json.loads(content(described, MOST))
         factors = dict(identity["factors"])
     except (ValueError, KeyError, TypeError):
-        raise FamilyError(f"{told}: says not what the family is") from None
+        raise FamilyError(f"{described}: says not what the family is") from None
     return LoadedFamily(folder, {**identity, "factors": factors}, blade, space)

@@ -12,6 +12,7 @@ from bladegen.blade.planform import PLANES
 from bladegen.blade.variants.designs import tabulated
 from bladegen.errors import FamilyError
 from bladegen.families.family import Family
+from bladegen.families.storage.places import copied
 from bladegen.formats.bundled import bundled
 from bladegen.formats.reading import read
 from bladegen.shapes.shape_space import ShapeSpace
@@ -64,7 +65,10 @@ def _space(path: Path, told: Mapping[str, Any]) -> ShapeSpace | None:
     if told["space_fingerprint"] is None:
         return None
     own = path / "space.npz"
-    return ShapeSpace.load(own) if own.is_file() else ShapeSpace.bundled()
+    if not own.is_file():
+        return ShapeSpace.bundled()
+    with copied(own) as file:
+        return ShapeSpace.load(file)
 
 
 def _baseline(path: Path, told: Mapping[str, Any]) -> Blade:

@@ -25,6 +25,8 @@ from bladegen.families.dataset.variables import (
 )
 from bladegen.families.labels.figures import FIGURES, STORED
 from bladegen.families.labels.figures import axes as axes_of_labels
+from bladegen.families.storage import places
+from bladegen.families.storage.tables import parquet
 
 __all__ = ["add_labels", "column_values", "complete", "is_complete", "opened"]
 
@@ -46,11 +48,9 @@ GRAPH = {
 
 def opened(store: Path, *, writing: bool = False) -> Any:
     """Return the group of a store, its arrays looked up one by one if it is written to."""
-    import zarr
-
     if writing:
-        return zarr.open_group(store, mode="r+", use_consolidated=False)
-    return zarr.open_group(store, mode="r")
+        return places.group(store, "r+", use_consolidated=False)
+    return places.group(store, "r")
 
 
 def is_complete(group: Any) -> bool:
@@ -115,11 +115,10 @@ def _put(
     about: Mapping[str, Any],
 ) -> None:
     """Write variables of the manifest, all with the split or only some, and gather metadata."""
-    import pyarrow.parquet as pq
     import zarr
 
     try:
-        with pq.ParquetFile(manifest) as file, warnings.catch_warnings():
+        with parquet(manifest) as file, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Zarr's, that consolidated metadata may change
             every = variables(file.schema_arrow.names, list(identity["factors"]))
             if only is None:

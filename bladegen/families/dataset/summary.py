@@ -6,6 +6,7 @@ import numpy as np
 
 from bladegen.families.dataset.loading import LoadedFamily
 from bladegen.families.dataset.splits import SPLITS
+from bladegen.families.storage.places import bytes_in
 
 __all__ = ["figures"]
 
@@ -29,7 +30,6 @@ def figures(family: LoadedFamily) -> dict[str, Any]:
         for name, own in values.items()
         if name not in ("variant", "valid", "attempts") and np.isfinite(own[sound]).any()
     }
-    stored = sum(file.stat().st_size for file in family.path.rglob("*") if file.is_file())
     return {
         "family": str(family.path),
         "blade": identity["blade"],
@@ -42,7 +42,7 @@ def figures(family: LoadedFamily) -> dict[str, Any]:
         "labels": ", ".join(identity.get("labels", {})) or "none",
         "files_of_variants": ", ".join(identity["formats"]) or "none",
         "splits": {name: len(family.split(name, sound=False)) for name in SPLITS},
-        "megabytes": stored / 1e6,
+        "megabytes": bytes_in(family.path) / 1e6,
         "made_by": f"bladegen {identity['bladegen']}",
         "command": about.get("command", ""),
         "ranges": ranges,

@@ -12,8 +12,8 @@ from bladegen.families.dataset.store import complete
 from bladegen.families.dataset.variables import parameter
 from bladegen.families.folder import FamilyFolder, read_manifest
 from bladegen.families.order import Order
+from bladegen.families.storage.places import replacing
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.support.files import replacing
 
 __all__ = ["CARD", "about", "write_card", "write_dataset"]
 
@@ -33,7 +33,8 @@ def write_dataset(order: Order) -> None:
     complete(place.store, place.manifest, identity, told)
     space = order.family.space
     if space is not None and space != ShapeSpace.bundled().at(space.u) and space.is_own:
-        space.save(place.path / SPACE)
+        with replacing(place.path / SPACE) as temporary:
+            space.save(temporary)
     write_card(place, identity, told)
 
 

@@ -1,3 +1,5 @@
+import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +10,8 @@ import bladegen as bg
 from bladegen.cli import commands
 from bladegen.errors import BladegenError, RenderError
 from bladegen.families.folder import FamilyFolder, read_manifest
+from bladegen.families.order import Order
+from bladegen.families.run import run as make
 from bladegen.views import contact_sheet, preview
 
 FEW = ("--spans", "16", "--count", "5", "--seed", "3")
@@ -156,6 +160,34 @@ def test_variants_are_blades_of_commands(tmp_path):
         assert isinstance(result.exception, BladegenError)
         assert said in str(result.exception)
     assert not Path("s3:").exists()
+
+
+def test_variants_are_blades_of_commands_that_read_definitions(tmp_path):
+    """`convert`, `info` and others said that there is no such blade."""
+    blade = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=61)
+    bounds = {"chord": (0.9, 0.95)}
+    planned = bg.family(blade, count=2, spans=16, bounds=bounds, design="box")
+    make(Order(planned, tmp_path / "fam"))
+
+    def command(*words):
+        done = CliRunner().invoke(commands.app, [*map(str, words)])
+        assert done.exit_code == 0, done.output
+        return done.output
+
+    def volume(file):
+        return bg.Blade.from_definition(bg.read(tmp_path / file), landmarks=61).volume
+
+    one, keep = tmp_path / "fam" / "1", ("--polars", "keep")
+    said = command("convert", one, tmp_path / "one.yaml", "--hub-radius", "3m", *keep)
+    assert "a family's variant" in said
+    assert bg.read(tmp_path / "one.yaml").rotor.hub_radius == 3.0
+    shutil.copy(bg.read("dtu10mw").source, tmp_path / "full.yaml")
+    command("convert", one, tmp_path / "turbine.yaml", "--into", tmp_path / "full.yaml", *keep)
+    wanted = planned[1].volume
+    assert wanted < 0.97 * blade.volume
+    assert volume("one.yaml") == pytest.approx(wanted, rel=1e-4)
+    assert volume("turbine.yaml") == pytest.approx(wanted, rel=1e-4)
+    assert json.loads(command("info", one, "--json"))["blade"] == "dtu10mw-00001"
 
 
 def test_how_a_family_spreads_is_drawn(tmp_path):

@@ -313,6 +313,40 @@ def test_places_and_names_are_what_they_are_taken_for(folder):
         next(family.batches(()))
 
 
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_what_is_drawn_by_conditions_fulfils_them_as_it_is_stored(dtype, tmp_path):
+    """Conditions on what is over span were known of families that were made, and not before."""
+    blade = bg.Blade.from_definition(bg.read("nrel5mw"), landmarks=61)
+    asked = {"count": 12, "spans": 16, "design": "box"}
+    asked["bounds"] = {"chord": (0.9, 1.1), "twist": (-0.05, 0.05), "thickness": (0.9, 1.1)}
+
+    def made(name, **more):
+        run(Order(bg.family(blade, **asked, **more), tmp_path / name, (), dtype))
+        return bg.load_family(tmp_path / name)
+
+    free, eta = made("free"), 0.7
+    middle = {}
+    for name in ("chord", "twist", "thickness", "area", "inertia_yy", "perimeter"):
+        at = [np.interp(eta, free["eta"][:], row) for row in free[name][:]]
+        middle[f"{name}@{eta}"] = float(np.sort(at)[3])  # true of eight in twelve
+    conditions = [f"{name} > {value!r}" for name, value in middle.items()]
+    assert [len(free.where(text)) for text in conditions] == [8] * 6
+    text = " and ".join([*conditions[1:4], "volume > 0", "twist_change < 2"])
+    drawn = made("drawn", where=text)
+    assert drawn.valid.all()
+    assert_array_equal(drawn.where(text), np.arange(12))
+    assert 0 < len(free.where(text)) < 12
+    for place in free.where(text):
+        assert_array_equal(drawn.parameters[place], free.parameters[place])
+    for wrong, said in (
+        ("thickness < 0.3", r"'thickness' has to say where on the span, 0 to 1, such as"),
+        ("area@1.5 < 0.3", r"'area@1.5' has to say where"),
+        ("mass < 3", r"'mass' is not known while variants are drawn, .*bladegen info FOLDER"),
+    ):
+        with pytest.raises(FamilyError, match=said):
+            bg.family(blade, **asked, where=wrong)
+
+
 def test_conditions_on_arrays_over_span_say_where(folder):
     """A plain "thickness < 0.3" had no answer but that there is no such name."""
     family = bg.load_family(folder)

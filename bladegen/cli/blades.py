@@ -41,8 +41,8 @@ def info(
         str,
         typer.Argument(
             metavar="BLADE",
-            help="A bundled blade's name, a definition's file, any file that bladegen wrote, or a "
-            "family's folder.",
+            help="A bundled blade's name, a definition's file, any file that bladegen wrote, a "
+            "family's folder, or a variant of it, FOLDER/NUMBER.",
         ),
     ],
     airfoils: Airfoils = None,
@@ -68,9 +68,9 @@ def info(
     Of any file that bladegen wrote it shows what it is made from; of a family's folder, what is
     in it and how it spreads.
     """
-    from bladegen.cli.options.variants import is_family, place
+    from bladegen.cli.options.variants import defined, is_family, place
     from bladegen.formats.airfoils.contours import thickness
-    from bladegen.formats.reading import holds_blade, is_read, read
+    from bladegen.formats.reading import holds_blade, is_read
     from bladegen.views.tables import definition_figures, station_rows
 
     path = place(blade)
@@ -85,7 +85,7 @@ def info(
     if made is not None and not (is_read(path) and holds_blade(path)):
         _print_making(blade, made, as_json)
         return
-    definition = read(blade, airfoils=airfoils)
+    definition = defined(blade, airfoils)
     figures = definition_figures(definition)
     figures |= {} if made is None else {"made_from": made.text}
     if definition.structure is not None:

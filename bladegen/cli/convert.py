@@ -52,6 +52,7 @@ def convert(
 ) -> None:
     """Convert a blade between file formats, and say what the new one cannot hold."""
     from bladegen.cli.options.parsing import metres
+    from bladegen.cli.options.variants import variant as variant_of
     from bladegen.errors import ExportError, Finding
     from bladegen.exports.definitions import write, write_into
     from bladegen.formats.into import with_polars_of
@@ -65,28 +66,33 @@ def convert(
     row = format_of(target, to)
     with progress_bar() as progress:
         progress(f"reading {source}")
-        definition = read(source, airfoils=airfoils)
+        variant = variant_of(source, None, plain=airfoils is None)
+        definition = read(source, airfoils=airfoils) if variant is None else variant.definition
         if hub_radius is not None:
             given = metres(hub_radius, "hub-radius", example="2m")
             definition = replace(definition, rotor=replace(definition.rotor, hub_radius=given))
+        what = definition if variant is None else replace(variant, definition=definition)
         ways: dict[str, Any] = {"polars": polars, "reynolds": reynolds, "progress": progress}
         if into is None:
             findings = write(
-                definition, target, format=row.name, command=COMMAND.get(), nodes=nodes, **ways
+                what, target, format=row.name, command=COMMAND.get(), nodes=nodes, **ways
             )
             title = row.title
         else:
             kept: tuple[Finding, ...] = ()
-            if polars not in ("none", "estimate-all"):
-                definition, kept = with_polars_of(definition, into)
-            whole, said = prepared(definition, **ways)
+            if variant is None and polars not in ("none", "estimate-all"):
+                what, kept = with_polars_of(definition, into)
+            whole, said = prepared(what, **ways)
             progress(f"writing {target}")
             findings = (
                 kept + said + write_into(whole, into, target, nodes=nodes, command=COMMAND.get())
             )
             title = f"into {into}"
+    read_from = ["read", definition.format, definition.source]
+    if variant is not None:
+        read_from = ["read", "a family's variant", source]
     print_table(
         ["", "format", "file"],
-        [["read", definition.format, definition.source], ["written", title, str(target)]],
+        [read_from, ["written", title, str(target)]],
     )
     print_findings([str(finding) for finding in (*definition.findings, *findings)])

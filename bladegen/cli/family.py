@@ -103,8 +103,8 @@ def family(
         str,
         typer.Option(
             metavar="CONDITIONS",
-            help="Draw variants that fulfil them: 'volume > 610 and t1 < 0.1'; names of factors, "
-            "volume, surface.",
+            help="Draw variants that fulfil them: 'volume > 610 and thickness@0.7 < 0.24'; names "
+            "of factors, volume, surface, what is over span.",
         ),
     ] = "",
     double: Annotated[

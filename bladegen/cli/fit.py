@@ -116,8 +116,8 @@ def fit(
 
     A report lies beside it. Exit with 1 if the tolerance is missed; the files are there then, too.
     """
+    from bladegen.cli.options.variants import defined
     from bladegen.fitting.fit import fit as fitted_to
-    from bladegen.formats.reading import read
     from bladegen.formats.writing import format_of
     from bladegen.support.files import replacing
 
@@ -126,7 +126,7 @@ def fit(
     with progress_bar() as progress:
         fitted = fitted_to(
             source,
-            like=None if like is None else read(like),
+            like=None if like is None else defined(str(like)),
             tolerance=allowed,
             unit=unit and unit.value,
             length=None if length is None else metres(length, "length", example="61.5m"),

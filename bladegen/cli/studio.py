@@ -12,7 +12,10 @@ __all__ = ["studio"]
 def studio(
     blade: Annotated[
         str,
-        typer.Argument(metavar="[BLADE]", help="A bundled blade's name, or a definition's file."),
+        typer.Argument(
+            metavar="[BLADE]",
+            help="A bundled blade's name, a definition's file, or a variant, FOLDER/NUMBER.",
+        ),
     ] = "iea15mw",
     airfoils: Airfoils = None,
     port: Annotated[
@@ -27,11 +30,15 @@ def studio(
 ) -> None:
     """See a blade in the browser and play with it: sliders, checks, exports."""
     from contextlib import ExitStack
+    from pathlib import Path
+    from tempfile import TemporaryDirectory
 
+    from bladegen.cli.options.variants import variant
     from bladegen.cli.terminal import progress_bar
+    from bladegen.formats.writing import write
     from bladegen.studio.server import Serving, serve
 
-    with ExitStack() as waiting:
+    with TemporaryDirectory(prefix="bladegen-variant-") as room, ExitStack() as waiting:
 
         def told(serving: Serving) -> None:
             waiting.close()
@@ -42,4 +49,8 @@ def studio(
                 webbrowser.open(serving.address)
 
         waiting.enter_context(progress_bar())("preparing the blade")
+        made = variant(blade, None, plain=airfoils is None)
+        if made is not None:  # the studio begins with a file
+            blade = str(Path(room) / f"{made.name}.yaml")
+            write(made, blade, polars="keep")
         serve(blade, host, port, told, airfoils=airfoils)

@@ -1,4 +1,4 @@
-"""Neighbouring variants of a family, made at once."""
+"""Neighbouring variants of a family, made at once, and what is measured on them."""
 
 from dataclasses import dataclass, replace
 
@@ -7,10 +7,28 @@ import numpy as np
 from bladegen.blade.blade import Blade
 from bladegen.blade.spans import reflected
 from bladegen.blade.variants.batch import Batch
+from bladegen.curves import polygons
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.values import brief
 
-__all__ = ["Block"]
+__all__ = ["OF_SKIN", "OVER_SPAN", "Block", "of_skin", "over_span"]
+
+OVER_SPAN = ("chord", "twist", "thickness", *polygons.MEASURES)
+OF_SKIN = ("volume", "surface")
+
+
+def over_span(batch: Batch) -> dict[str, Array]:
+    """Return what was measured on sections, (b, k) each: metres, degrees; `OVER_SPAN` by name."""
+    assert batch.measures is not None  # it was asked for
+    planform = batch.chord, np.degrees(batch.twist), batch.relative_thickness
+    return dict(zip(OVER_SPAN, (*planform, *np.moveaxis(batch.measures, -1, 0)), strict=True))
+
+
+def of_skin(batch: Batch) -> dict[str, Array]:
+    """Return the volume [m3] within the skins of variants, and their areas [m2], (b,) each."""
+    each = (sections.astype(np.float64) for sections in batch.sections)  # fits in a cache
+    measured = [polygons.volume_and_area(sections) for sections in each]
+    return dict(zip(OF_SKIN, np.reshape(measured, (-1, 2)).T, strict=True))
 
 
 @dataclass(frozen=True, eq=False)

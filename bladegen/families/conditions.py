@@ -6,7 +6,7 @@ array over span has at 70 % of it.  Nothing is evaluated but that.
 
 import operator
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from bladegen.errors import FamilyError
 from bladegen.support.arguments import shown, suggestion
 from bladegen.support.arrays import Array, Mask
 
-__all__ = ["at_spans", "called", "factor_numbers", "matching", "named", "numbers"]
+__all__ = ["at_spans", "called", "factor_numbers", "matching", "named", "numbers", "placed"]
 
 CHANGES = ("thickness", "camber", "chord", "twist")
 OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
@@ -54,32 +54,49 @@ def numbers(table: Any, columns: dict[str, str]) -> dict[str, Array]:
     return found
 
 
-def at_spans(family: Any, names: tuple[str, ...]) -> dict[str, Array]:
-    """Return what arrays over span of a loaded family hold at a place, by names like "chord@0.7".
+def at_spans(
+    eta: Array, names: tuple[str, ...], values: Callable[[str, slice], Array]
+) -> dict[str, Array]:
+    """Return what arrays over span hold at a place, by names like "chord@0.7".
 
     Between two sections they are taken to be straight.
+
+    Parameters
+    ----------
+    eta : (k,) array
+        Span fractions of the sections.
+    names : tuple of str
+        Names with a place, as `placed` finds them right.
+    values : callable
+        Gives the columns (variants, 2) of an array, by its name and a slice of the sections.
+    """
+    found = {}
+    for name in names:
+        array, _, place = name.partition("@")
+        where = float(place)
+        after = int(np.clip(np.searchsorted(eta, where), 1, len(eta) - 1))
+        share = (where - eta[after - 1]) / (eta[after] - eta[after - 1])
+        found[name] = values(array, slice(after - 1, after + 1)) @ np.array([1.0 - share, share])
+    return found
+
+
+def placed(eta: Array, names: tuple[str, ...], spanwise: Collection[str]) -> tuple[str, ...]:
+    """Return those of some names that are of arrays over span.
 
     Raises
     ------
     FamilyError
-        If a name is that of an array over span without a place, or the place is beyond the blade.
+        If one is that of an array over span without a place, or the place is beyond the blade.
     """
-    found = {}
-    for name in names:
+    found = tuple(name for name in names if name.partition("@")[0] in spanwise)
+    for name in found:
         array, at, place = name.partition("@")
-        if array not in family or family[array].shape != (len(family), len(family["eta"][:])):
-            continue
-        eta = np.asarray(family["eta"][:])
         where = _number(place) if at else None
         if where is None or not eta[0] <= where <= eta[-1]:
             raise FamilyError(
                 f"where: {name!r} has to say where on the span, {eta[0]:g} to {eta[-1]:g}, such as "
                 f"'{array}@0.7'"
             )
-        after = int(np.clip(np.searchsorted(eta, where), 1, len(eta) - 1))
-        share = (where - eta[after - 1]) / (eta[after] - eta[after - 1])
-        values = np.asarray(family[array][:, after - 1 : after + 1])
-        found[name] = values @ np.array([1.0 - share, share])
     return found
 
 

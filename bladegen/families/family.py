@@ -136,7 +136,7 @@ class Family:
         measured : bool
             Measure areas, centroids and so on (`Batch.measures`).
         """
-        made: dict[str, Any] = {"dtype": dtype, "measured": measured}
+        made: dict[str, Any] = {"dtype": dtype, "measured": measured or self._rules.measuring}
         values = self.design.at(index)
         many = np.count_nonzero(self._rules.left(values)) > len(index) // 2
         if (many or self._rules.measuring) and self._redraws:
@@ -149,7 +149,7 @@ class Family:
         batch = self._sections.evaluate(*self._rules.split(values), **made)
         rules = self._rules
         refused = rules.reasons(values, batch.faults, batch.relative_thickness, batch.looks)
-        unwanted = rules.unwanted(values, batch.sections)
+        unwanted = rules.unwanted(values, batch)
         refused = [one or other for one, other in zip(refused, unwanted, strict=True)]
         values, attempts, reasons = self._redrawn(index, values, refused)
         again = np.flatnonzero(attempts > 1)
@@ -262,7 +262,8 @@ def family(
         Take variants whose sections leave the space's data, or are odd: see `Blade.perturbed`.
     where : str
         Take variants that fulfil conditions only: "volume > 610 and twist_change < 1".  They may
-        name what varies (degrees; changes as datasets have them), volume [m3] and surface [m2].
+        name what varies (degrees; changes as datasets have them), volume [m3], surface [m2], and
+        what is over span at a place ("thickness@0.7 < 0.24").
 
     Raises
     ------

@@ -7,7 +7,7 @@ import numpy as np
 
 from bladegen.blade.variants.draws import WIDEST
 from bladegen.curves import polygons
-from bladegen.families.block import Block
+from bladegen.families.block import Block, of_skin, over_span
 from bladegen.families.family import Family
 from bladegen.measures.spanwise import UNITS
 
@@ -26,10 +26,7 @@ def drawn_again(family: Family, block: Block) -> list[str]:
 def rows_of(family: Family, block: Block) -> dict[str, Any]:
     """Return the manifest's columns for a block."""
     batch = block.batch
-    assert batch.measures is not None  # _make asked for them
-    count = len(block.index)
-    each = (sections.astype(np.float64) for sections in batch.sections)  # fits in a cache
-    volume, surface = np.array([polygons.volume_and_area(sections) for sections in each]).T
+    count, skin, measured = len(block.index), of_skin(batch), over_span(batch)
     rows: dict[str, Any] = {
         "index": block.index,
         "name": [family.name(int(place)) for place in block.index],
@@ -42,16 +39,14 @@ def rows_of(family: Family, block: Block) -> dict[str, Any]:
         degrees = name == "twist"
         rows["twist_deg" if degrees else name] = np.degrees(column) if degrees else column
     rows |= {
-        "volume_m3": volume,
-        "surface_m2": surface,
+        "volume_m3": skin["volume"],
+        "surface_m2": skin["surface"],
         "sections_sha256": [sections_digest(sections) for sections in batch.sections],
-        "section_chord_m": batch.chord,
-        "section_twist_deg": np.degrees(batch.twist),
-        "section_relative_thickness": batch.relative_thickness,
+        "section_chord_m": measured["chord"],
+        "section_twist_deg": measured["twist"],
+        "section_relative_thickness": measured["thickness"],
     }
-    for name, values in zip(polygons.MEASURES, np.moveaxis(batch.measures, -1, 0), strict=True):
-        rows[f"section_{name}_{UNITS[name]}"] = values
-    return rows
+    return rows | {f"section_{name}_{UNITS[name]}": measured[name] for name in polygons.MEASURES}
 
 
 def _seeds(seed: int, count: int) -> Any:

@@ -7,13 +7,20 @@ from typing import Any
 import numpy as np
 
 from bladegen.blade.changes.deformation import AffineChange
-from bladegen.blade.variants.batch import SectionBatch
+from bladegen.blade.variants.batch import Batch, SectionBatch
 from bladegen.blade.variants.designs import Design
 from bladegen.blade.variants.factors import Factors
 from bladegen.blade.variants.verdicts import leaving, strayed, unsound
-from bladegen.curves import polygons
 from bladegen.errors import FamilyError
-from bladegen.families.conditions import called, factor_numbers, matching, named
+from bladegen.families.block import OF_SKIN, OVER_SPAN, of_skin, over_span
+from bladegen.families.conditions import (
+    at_spans,
+    called,
+    factor_numbers,
+    matching,
+    named,
+    placed,
+)
 from bladegen.support.arguments import suggestion
 from bladegen.support.arrays import Array, Indices, Mask
 
@@ -21,7 +28,6 @@ __all__ = ["Rules"]
 
 AHEAD = 16  # draws of a variant looked at together, for the first that keeps to the data
 STORED = (np.float64, np.float32)  # sections: conditions hold in both, whichever are written
-MEASURED = ("volume", "surface")  # of sections, that conditions may name
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +45,7 @@ class Rules:
     allow_extrapolation, allow_odd : bool
         Whether sections may leave the space's data, and be odd.
     where : str
-        Conditions on factors, volume and surface; none if empty.
+        Conditions on factors, volume, surface and what is over span; none if empty.
     """
 
     sections: SectionBatch
@@ -51,18 +57,23 @@ class Rules:
 
     def __post_init__(self) -> None:
         if self.where:
-            known = [*map(called, self.what.names), *MEASURED]
+            known = [*map(called, self.what.names), *OF_SKIN]
+            spanwise = placed(self.sections.eta, named(self.where), OVER_SPAN)
+            every = [*known, *(f"{name}@0.7" for name in OVER_SPAN)]
             for name in named(self.where):
-                if name not in known:
+                if name not in known and name not in spanwise:
                     raise FamilyError(
                         f"where: {name!r} is not known while variants are drawn, but "
-                        f"{', '.join(known)}{suggestion(name, known)}"
+                        f"{', '.join(every)}{suggestion(name, every)}; `bladegen info FOLDER "
+                        "--where` finds labels in what was made"
                     )
 
     @cached_property
     def measuring(self) -> bool:
         """Whether conditions name what is measured on sections."""
-        return bool(self.where) and not set(MEASURED).isdisjoint(named(self.where))
+        measured = {*OF_SKIN, *OVER_SPAN}
+        names = named(self.where) if self.where else ()
+        return any(name.partition("@")[0] in measured for name in names)
 
     def split(self, values: Array) -> tuple[Array, AffineChange]:
         """Return coordinates and affine parameters of variants (b, d)."""
@@ -82,20 +93,22 @@ class Rules:
                 break
             made = None
             if self.measuring:
-                how: dict[str, Any] = {"tested": False, "dtype": kind}
-                made = self.sections.evaluate(*self.split(values[sound]), **how).sections
+                how: dict[str, Any] = {"tested": False, "measured": True, "dtype": kind}
+                made = self.sections.evaluate(*self.split(values[sound]), **how)
             for row, reason in zip(sound, self.unwanted(values[sound], made), strict=True):
                 reasons[row] = reason
         return reasons
 
-    def unwanted(self, values: Array, sections: Array | None) -> list[str]:
-        """Say which variants (b, d), with sections (b, k, n, 3), do not fulfil the conditions."""
+    def unwanted(self, values: Array, batch: Batch | None) -> list[str]:
+        """Say which variants (b, d), with their measured sections, do not fulfil the conditions."""
         if not self.where:
             return [""] * len(values)
         known = factor_numbers(self.what.names, values)
-        if sections is not None and self.measuring:
-            each = [polygons.volume_and_area(one.astype(np.float64)) for one in sections]
-            known |= dict(zip(MEASURED, np.reshape(each, (-1, 2)).T, strict=True))
+        if batch is not None and self.measuring:
+            names, eta = named(self.where), self.sections.eta
+            known |= of_skin(batch) if not set(OF_SKIN).isdisjoint(names) else {}
+            spanwise, arrays = placed(eta, names, OVER_SPAN), over_span(batch)
+            known |= at_spans(eta, spanwise, lambda name, part: arrays[name][:, part])
         held = matching(known, self.where).tolist()
         return ["" if fulfilled else f"does not fulfil {self.where}" for fulfilled in held]
 

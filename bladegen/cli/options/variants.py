@@ -6,7 +6,7 @@ from typing import Any
 from bladegen.errors import BladegenError
 from bladegen.support.arguments import suggestion
 
-__all__ = ["is_family", "place", "variant"]
+__all__ = ["defined", "is_family", "place", "variant"]
 
 
 def is_family(path: Path) -> bool:
@@ -26,6 +26,15 @@ def place(source: str) -> Path:
     from bladegen.families.storage.places import located
 
     return located(source)
+
+
+def defined(source: str, airfoils: Any = None) -> Any:
+    """Return the definition that a source means; of a variant, one with airfoils of its own."""
+    from bladegen.formats.common.redefinition import redefined
+    from bladegen.formats.reading import read
+
+    made = variant(source, None, plain=airfoils is None)
+    return read(source, airfoils=airfoils) if made is None else redefined(made)
 
 
 def variant(source: str, landmarks: int | None, *, plain: bool) -> Any:

@@ -15,7 +15,7 @@ import numpy as np
 
 from bladegen.blade.blade import Blade
 from bladegen.errors import FamilyError, MissingLibraryError
-from bladegen.families.conditions import at_spans, matching, named, numbers
+from bladegen.families.conditions import at_spans, matching, named, numbers, placed
 from bladegen.families.dataset.graphs import edges, surface, triangles
 from bladegen.families.dataset.reading import batches, place_of
 from bladegen.families.dataset.replanning import planned_again
@@ -144,7 +144,11 @@ class LoadedFamily:
 
         >>> family.where("volume > 600 and thickness_change < 1.02")  # doctest: +SKIP
         """
-        known = self.numbers | at_spans(self, named(conditions))
+        eta, wanted = np.asarray(self["eta"][:]), named(conditions)
+        of_names = {name.partition("@")[0] for name in wanted} & set(self.names)
+        shape = len(self), len(eta)
+        spanwise = placed(eta, wanted, [n for n in of_names if self[n].shape == shape])
+        known = self.numbers | at_spans(eta, spanwise, lambda n, part: self[n][:, part])
         return np.flatnonzero(matching(known, conditions))
 
     def split(

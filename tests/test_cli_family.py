@@ -162,6 +162,7 @@ def test_variants_are_blades_of_commands(tmp_path):
     assert not Path("s3:").exists()
 
 
+@pytest.mark.nightly
 def test_variants_are_blades_of_commands_that_read_definitions(tmp_path):
     """`convert`, `info` and others said that there is no such blade."""
     blade = bg.Blade.from_definition(bg.read("dtu10mw"), landmarks=61)

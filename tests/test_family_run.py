@@ -10,12 +10,14 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import zarr
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from processes import children, gone_within
 
 import bladegen as bg
 from bladegen.cad import exchange, shapes
-from bladegen.errors import BladegenError, PerturbationError
+from bladegen.errors import BladegenError, FamilyError, PerturbationError
 from bladegen.exports.options import Options
 from bladegen.families.family import BLOCK
 from bladegen.families.folder import FamilyFolder
@@ -23,6 +25,7 @@ from bladegen.families.manifest_rows import sections_digest
 from bladegen.families.order import Order
 from bladegen.families.processes import in_processes
 from bladegen.families.run import run
+from bladegen.families.storage.layout import FILES, block_of, home_of
 from bladegen.measures import checks
 from bladegen.measures.properties import volume
 from bladegen.measures.spanwise import built
@@ -93,6 +96,47 @@ def test_the_manifest_says_what_the_variants_are(reference):
         # both are measured on the points that are written: here on landmarks, there on their curve
         twist = np.degrees(built(variant, family.eta)[1])
         assert_allclose(table["section_twist_deg"][place], twist, rtol=0, atol=0.01)
+
+
+@given(st.integers(1, 60_000_000), st.sampled_from([2, 64]))
+def test_no_folder_of_a_long_family_has_ten_thousand_entries(count, least):
+    """A million variants put 15,625 shards into one folder."""
+    block = block_of(count, least)
+    assert -(-count // block) < 10_000
+    assert block == least or -(-count // (block // 2)) >= 10_000  # no larger than it takes
+    for formats, together in ((1, 1000), (3, 1000), (4, 100), (30, 100)):
+        start = min(count, 99_000) // together * together
+        assert len({home_of(start + i, formats) for i in range(together)}) == 1
+        assert home_of(start, formats) != home_of(start + together, formats)
+        assert formats * FILES * together + 999 < 10_000  # files of the first, folders of the rest
+
+
+def test_long_families_hold_the_same_in_larger_shards(tmp_path, monkeypatch):
+    """A block of more variants than are made at once; a store that is there keeps its own."""
+    run(Order(small(100), tmp_path / "plain"))
+    monkeypatch.setattr("bladegen.families.order.block_of", lambda count, least: 96)
+    assert run(Order(small(100), tmp_path / "long"), jobs=2) == 100
+    assert_array_equal(sections(tmp_path / "long")[:], sections(tmp_path / "plain")[:])
+    tables = [pq.read_table(tmp_path / name / "manifest.parquet") for name in ("long", "plain")]
+    assert tables[0].equals(tables[1])
+    assert sections(tmp_path / "long").shards[0] == 96
+    assert run(Order(small(130), tmp_path / "plain"), append=True) == 130 - 64
+    assert sections(tmp_path / "plain").shards[0] == BLOCK
+    monkeypatch.setattr("bladegen.families.additions.growth.MOST", 3)
+    with pytest.raises(FamilyError, match="has 64 variants in a shard, and a folder holds 3 shard"):
+        run(Order(small(200), tmp_path / "plain"), append=True)
+
+
+def test_files_of_many_variants_lie_in_folders_of_their_own(tmp_path, monkeypatch):
+    home = "bladegen.families.order.home_of"
+    monkeypatch.setattr(home, lambda place, formats: f"{place // 2:03d}" if place > 1 else "")
+    told = []
+    run(Order(small(3), tmp_path / "fam", ("p3d",), options=COARSE), foretold=told.append)
+    files = pq.read_table(tmp_path / "fam" / "manifest.parquet")["p3d_file"].to_pylist()
+    own = ["nrel5mw-00000", "nrel5mw-00001", "001/nrel5mw-00002"]
+    assert files == [f"blades/{name}.p3d" for name in own]
+    sizes = [(tmp_path / "fam" / file).stat().st_size for file in files]
+    assert told[0].needed > sizes[0] > 1000
 
 
 def test_sections_say_where_they_are(reference):

@@ -1,6 +1,7 @@
 """Neighbouring variants of a family, made at once, and what is measured on them."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from bladegen.curves import polygons
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.values import brief
 
-__all__ = ["OF_SKIN", "OVER_SPAN", "Block", "of_skin", "over_span"]
+__all__ = ["OF_SKIN", "OVER_SPAN", "Block", "joined", "of_skin", "over_span"]
 
 OVER_SPAN = ("chord", "twist", "thickness", *polygons.MEASURES)
 OF_SKIN = ("volume", "surface")
@@ -29,6 +30,21 @@ def of_skin(batch: Batch) -> dict[str, Array]:
     each = (sections.astype(np.float64) for sections in batch.sections)  # fits in a cache
     measured = [polygons.volume_and_area(sections) for sections in each]
     return dict(zip(OF_SKIN, np.reshape(measured, (-1, 2)).T, strict=True))
+
+
+def joined(blocks: "list[Block]") -> "Block":
+    """Return neighbouring blocks as one."""
+    if len(blocks) == 1:
+        return blocks[0]
+    arrays: dict[str, Any] = {
+        name: np.concatenate([getattr(one, name) for one in blocks])
+        for name in ("index", "values", "attempts")
+    }
+    texts: dict[str, Any] = {
+        name: tuple(text for one in blocks for text in getattr(one, name))
+        for name in ("reasons", "refused")
+    }
+    return Block(**arrays, **texts, batch=Batch.joined([one.batch for one in blocks]))
 
 
 @dataclass(frozen=True, eq=False)

@@ -130,11 +130,11 @@ class FamilyFolder:
                 self.description.unlink(missing_ok=True)
             raise
 
-    def bytes_of(self, number: int, names: Sequence[str]) -> int:
-        """Return the size of a whole block's part, and of the files of its variants."""
+    def bytes_of(self, number: int, stems: Sequence[Path]) -> int:
+        """Return the size of a whole block's part, and of files that begin with some stems."""
         files = [self.part(number)]
-        for name in names:
-            for found in self.blades.glob(f"{name}[._-]*"):
+        for stem in stems:
+            for found in stem.parent.glob(f"{stem.name}[._-]*"):
                 files += (
                     [found] if found.is_file() else [p for p in found.rglob("*") if p.is_file()]
                 )
@@ -207,6 +207,12 @@ class FamilyFolder:
     def _arrays(self) -> Any:
         return places.group(self.store, "r+", use_consolidated=False)
 
+    def stored_block(self) -> int | None:
+        """Return how many variants a shard of the store holds; None without one."""
+        if not (self.store / "sections" / "zarr.json").is_file():
+            return None
+        return int(self._arrays["sections"].shards[0])
+
     def write_block(
         self, number: int, arrays: Mapping[str, Any], rows: Mapping[str, Any], part: Path
     ) -> None:
@@ -243,7 +249,7 @@ class FamilyFolder:
         places.removed(self.parts)
         if in_store(self.path):
             return  # objects are whole
-        for left in [*self.path.glob(f"{ZARR}/**/*.partial"), *self.blades.glob(".*")]:
+        for left in [*self.path.glob(f"{ZARR}/**/*.partial"), *self.blades.glob("**/.*")]:
             left.unlink(missing_ok=True)  # what killed runs were writing
 
 

@@ -11,14 +11,15 @@ from bladegen.blade.blade import Blade
 from bladegen.errors import PerturbationError, PromiseError
 from bladegen.exports import exporters
 from bladegen.exports.products import Products
-from bladegen.families.block import Block
+from bladegen.families.block import Block, joined
 from bladegen.families.dataset.graphs import surface
+from bladegen.families.family import BLOCK
 from bladegen.families.folder import FLOAT_TYPES, GRAPH
 from bladegen.families.manifest_rows import drawn_again, rows_of
 from bladegen.families.order import Order
 from bladegen.families.storage.places import filled
 from bladegen.support.arrays import Indices
-from bladegen.support.files import digest_of
+from bladegen.support.files import digest_of, folder
 from bladegen.support.threads import one_thread
 
 __all__ = ["Made", "make_block", "sections_of"]
@@ -52,9 +53,14 @@ def _graph(block: Block) -> dict[str, Any]:
 
 
 def sections_of(order: Order, index: Indices) -> Block:
-    """Make the sections of some variants, in one thread as all that they are made from."""
+    """Make the sections of some variants, in one thread as all that they are made from.
+
+    So many at a time, since what lies between draws and sections takes as much memory as they.
+    """
+    some = [index[start : start + BLOCK] for start in range(0, max(1, len(index)), BLOCK)]
+    how: dict[str, Any] = {"dtype": FLOAT_TYPES[order.dtype], "measured": True}
     with one_thread():
-        return order.family.block(index, dtype=FLOAT_TYPES[order.dtype], measured=True)
+        return joined([order.family.block(part, **how) for part in some])
 
 
 def _faults(order: Order, block: Block) -> dict[int, str]:
@@ -71,15 +77,18 @@ def _faults(order: Order, block: Block) -> dict[int, str]:
 def _exported(order: Order, block: Block, suffix: str, faults: dict[int, str]) -> dict[str, Any]:
     """Write the sound variants in one format; return the columns that say so."""
     names, digests, problems = [], [], []
-    with filled(order.place.blades) as room:
+    blades = order.place.blades
+    with filled(blades) as room:
         for place, valid in zip(block.index, block.valid, strict=True):
             name, digest, problem = "", "", ""
             if valid and place in faults:
                 problem = faults[place]
             elif valid:
-                path = room / f"{order.family.name(int(place))}{suffix}"
+                home = folder(room / order.home(int(place)).relative_to(blades))
+                path = home / f"{order.family.name(int(place))}{suffix}"
                 made, problem = _export(order, order.family.named(block, int(place)), path)
-                name, digest = f"{order.place.blades.name}/{made.name}", digest_of(made)
+                name = f"{blades.name}/{made.relative_to(room).as_posix()}"
+                digest = digest_of(made)
             names.append(name)
             digests.append(digest)
             problems.append(problem)

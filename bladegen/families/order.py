@@ -13,6 +13,7 @@ from bladegen.families.family import BLOCK, Family
 from bladegen.families.folder import FLOAT_TYPES, GRAPH, FamilyFolder
 from bladegen.families.identity import fingerprint, identity
 from bladegen.families.labels.labelling import Labelling, checked
+from bladegen.families.storage.layout import block_of, home_of
 from bladegen.families.storage.places import located
 from bladegen.formats.writing import MIRRORED
 from bladegen.support.arrays import Array
@@ -105,10 +106,18 @@ class Order:
             graph = {name: (named[: n - 1], lengths[: n - 1]) for name, n in GRAPH.items()}
         return graph | self.labelling.arrays()
 
-    @property
+    @cached_property
     def block(self) -> int:
-        """How many variants are made at once: fewer where each takes a second."""
-        return FEW if self.suffixes else BLOCK
+        """How many variants are whole at once: those of the folder's store, if it is there.
+
+        Fewer where each takes a second, more in long families (`storage.layout`).
+        """
+        there = FamilyFolder(self.target).stored_block()
+        return there or block_of(len(self.family), FEW if self.suffixes else BLOCK)
+
+    def home(self, place: int) -> Path:
+        """Return the folder of a variant's files."""
+        return self.place.blades / home_of(place, len(self.suffixes))
 
     @cached_property
     def spans(self) -> Array:

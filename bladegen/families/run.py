@@ -146,11 +146,12 @@ def _bytes(order: Order, variants: int) -> int:
 
 def _foreseen(order: Order, left: list[int], made: int, seconds: float) -> Forecast:
     """Return what the blocks that are left take, by one that is whole; raise without room."""
-    count, names = _variants(order, [made]), []
+    count, stems = _variants(order, [made]), []
     if order.suffixes:
         first = made * order.block
-        names = [order.family.name(place) for place in range(first, first + count)]
-    one = order.place.bytes_of(made, names) + _bytes(order, count)
+        each = range(first, first + count)
+        stems = [order.home(place) / order.family.name(place) for place in each]
+    one = order.place.bytes_of(made, stems) + _bytes(order, count)
     others = _variants(order, left) - count
     needed = one * others // count
     require_room(order.target, others, needed)

@@ -1,6 +1,10 @@
 """What a batch of variants is: their sections at fixed spans, and what is wrong with each."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
 
 from bladegen.support.arrays import Array, Indices
 from bladegen.support.values import brief
@@ -39,6 +43,15 @@ class Batch:
     measures: Array | None = None
 
     __repr__ = brief
+
+    @classmethod
+    def joined(cls, batches: "Sequence[Batch]") -> "Batch":
+        """Return variants of some batches, in their order, as one."""
+        made: dict[str, Any] = {}
+        for name in (entry.name for entry in fields(cls)):
+            parts = [getattr(one, name) for one in batches]
+            made[name] = None if parts[0] is None else np.concatenate(parts)
+        return cls(**made)
 
     def take(self, rows: Indices, other: "Batch") -> None:
         """Put the variants of another batch in the place of some."""

@@ -16,6 +16,7 @@ from bladegen.families.folder import GRAPH, FamilyFolder
 from bladegen.families.identity import require_same
 from bladegen.families.labels.figures import STORED
 from bladegen.families.order import Order
+from bladegen.families.storage.layout import MOST
 from bladegen.families.storage.places import folder, replacing
 from bladegen.families.storage.tables import parquet
 
@@ -59,6 +60,11 @@ def grow(order: Order) -> None:
         raise FamilyError(
             f"{place.path}: {count} variants have names of more digits than the {there} that are "
             "there; take another folder"
+        )
+    if -(-count // place.block) > MOST:
+        raise FamilyError(
+            f"{place.path}: has {place.block} variants in a shard, and a folder holds {MOST} "
+            f"shards; take another folder for more than {MOST * place.block} variants in all"
         )
     _keep_parts(place)
     if there % place.block:

@@ -26,6 +26,7 @@ from bladegen.families.dataset.variables import (
 from bladegen.families.labels.figures import FIGURES, STORED
 from bladegen.families.labels.figures import axes as axes_of_labels
 from bladegen.families.storage import places
+from bladegen.families.storage.layout import MOST
 from bladegen.families.storage.tables import parquet
 
 __all__ = ["add_labels", "column_values", "complete", "is_complete", "opened"]
@@ -189,7 +190,7 @@ def _fill(
     """Write variables, and the split by a seed if there is one, some rows at a time."""
     count, arrays = file.metadata.num_rows, {}
     lengths = {"variant": count, "span": group["sections"].shape[1], **axes}
-    rows = max(1, CHUNK // lengths["span"])
+    rows = max(1, CHUNK // lengths["span"], -(-count // MOST))
     split = Variable("split", "", ("variant",), f"{', '.join(SPLITS)}: {SHARES} on average")
     kinds = {
         one.name: column_values(file.schema_arrow.empty_table()[one.column]).dtype for one in wanted

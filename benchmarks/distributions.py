@@ -22,8 +22,8 @@ from bladegen.blade.variants.designs import DESIGNS, DISTRIBUTED
 from bladegen.curves.crossing import crossing_sections
 from bladegen.formats.baselines import baselines
 from bladegen.shapes import cst
-from bladegen.shapes.densities import KINDS
 from bladegen.shapes.shape_space import FILES
+from bladegen.shapes.statistics.densities import KINDS
 
 DRAWS, VARIANTS, SWEEPS, STEPS = 2000, 192, 200, 11
 SEED = 7

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from bladegen.formats.reading import read
     from bladegen.parametric.model import ParametricBlade
     from bladegen.shapes.shape_space import ShapeSpace
+    from bladegen.shapes.statistics.two_samples import TwoSamples, two_samples
 
 getLogger(__name__).addHandler(NullHandler())  # who wants to hear more asks for it
 
@@ -66,6 +67,7 @@ _HOME = {
     "ShapeSpace": "shapes.shape_space",
     "Station": "definition.blade_definition",
     "Structure": "definition.structure.structure",
+    "TwoSamples": "shapes.statistics.two_samples",
     "Web": "definition.structure.structure",
     "Window": "blade.changes.deformation",
     "bundled": "formats.bundled",
@@ -74,6 +76,7 @@ _HOME = {
     "fit": "fitting.fit",
     "load_family": "families.dataset.loading",
     "read": "formats.reading",
+    "two_samples": "shapes.statistics.two_samples",
     "write": "exports.definitions",
     "write_airfoil": "formats.airfoils.writing",
 }
@@ -98,6 +101,7 @@ __all__ = [
     "ShapeSpace",
     "Station",
     "Structure",
+    "TwoSamples",
     "Web",
     "Window",
     "__version__",
@@ -107,6 +111,7 @@ __all__ = [
     "fit",
     "load_family",
     "read",
+    "two_samples",
     "write",
     "write_airfoil",
 ]

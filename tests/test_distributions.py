@@ -19,9 +19,9 @@ from bladegen.errors import DesignError, MissingLibraryError, SpaceError
 from bladegen.formats.baselines import baselines
 from bladegen.shapes.cst import fit, shapes
 from bladegen.shapes.database import build_space
-from bladegen.shapes.distributions import KINDS
-from bladegen.shapes.ellipsoids import smallest
 from bladegen.shapes.shape_space import FILES
+from bladegen.shapes.statistics.distributions import KINDS
+from bladegen.shapes.statistics.ellipsoids import smallest
 
 UNIFORM = ("box", "ellipsoid", "hull")
 

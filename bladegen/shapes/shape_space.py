@@ -14,10 +14,10 @@ import numpy as np
 
 from bladegen.errors import SpaceError
 from bladegen.shapes import grassmann
-from bladegen.shapes.distributions import distribution_of, sound_at
 from bladegen.shapes.learning import checked, chunks, parameters, principal
 from bladegen.shapes.other_landmarks import evaluated
 from bladegen.shapes.saved_spaces import ORTHONORMAL, problem_of, read_space
+from bladegen.shapes.statistics.distributions import distribution_of, sound_at
 from bladegen.support.archive import save_arrays
 from bladegen.support.arguments import generator, numbers, one_of, path_of, whole
 from bladegen.support.arrays import Array, readonly

@@ -18,8 +18,8 @@ from bladegen.blade.variants import draws
 from bladegen.blade.variants.draws import Points, Seed, seed_of
 from bladegen.blade.variants.factors import Factors, factors
 from bladegen.errors import DesignError
-from bladegen.shapes.distributions import Distribution
 from bladegen.shapes.shape_space import ShapeSpace
+from bladegen.shapes.statistics.distributions import Distribution
 from bladegen.support.arguments import numbers, one_of, whole
 from bladegen.support.arrays import Array, Indices, readonly
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from bladegen.curves.crossing import crossing_sections
 from bladegen.errors import SpaceError
-from bladegen.shapes.densities import KINDS, Density
+from bladegen.shapes.statistics.densities import KINDS, Density
 from bladegen.support.arguments import generator, numbers, one_of, whole
 from bladegen.support.arrays import Array, Mask
 

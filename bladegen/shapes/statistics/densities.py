@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from bladegen.errors import MissingLibraryError, SpaceError
-from bladegen.shapes.ellipsoids import smallest
+from bladegen.shapes.statistics.ellipsoids import smallest
 from bladegen.support.arrays import Array, Indices, Mask
 from bladegen.support.values import brief
 

@@ -317,3 +317,37 @@ def test_each_change_keeps_the_chord_line_of_the_blade_that_it_changes(blades):
 def test_a_convention_that_is_none_is_refused(blades):
     with pytest.raises(PerturbationError, match="chord_line: got 'raw', allowed are kept"):
         blades["nrel5mw"].perturbed(SPACE, T, chord_line="raw")
+
+
+@pytest.mark.parametrize("each", [False, True])
+@given(t=SMALL.filter(lambda t: max(map(abs, t)) > 0.05), share=st.floats(0.001, 0.006))
+@settings(max_examples=few(4))
+def test_coordinates_move_the_skin_by_what_is_stated(blades, each, t, share):
+    """Equal |t| moves a root by several times what it moves a tip."""
+    blade = blades["nrel5mw"]
+    found = bg.Coordinates.displacing(blade, SPACE, t, share, each=each)
+    variant = blade.untested(SPACE, found, AffineChange(), allow_extrapolation=True)
+    eta = blade.stations(41)
+    eta = eta[bg.Window.beyond_circles(blade.definition.stations)(eta) >= 1.0]
+    before, after = blade.profiles(eta), variant.profiles(eta)
+    along = before[:, 2:] - before[:, :-2]
+    normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    away = np.abs(np.sum((after - before)[:, 1:-1] * normal, axis=-1)).max(axis=1)
+    assert_allclose(away if each else away.max(), share, rtol=0.05)  # normals by other differences
+    assert np.all(away < 1.05 * share)
+    flat = found.values @ np.asarray(t) / np.linalg.norm(t) / np.linalg.norm(found.values, axis=1)
+    assert_allclose(flat, 1.0, atol=1e-12)  # the direction that was given
+    larger = bg.Coordinates.displacing(blade, SPACE, np.multiply(t, 7.0), share, each=each)
+    assert_allclose(larger.values, found.values, rtol=1e-3, atol=1e-12)
+
+
+def test_displacements_that_cannot_be_are_refused(blades):
+    blade = blades["nrel5mw"]
+    for t, share, said in (
+        ([1, 0, 0, 0], 0.0, "displacement: got 0, must be above 0"),
+        ([0, 0, 0, 0], 0.01, "t: moves the section at .* by nothing"),
+        ([1, 0, 0, 0], 3.0, "displacement: got 3, which no multiple of t reaches; give less"),
+    ):
+        with pytest.raises(PerturbationError, match=said):
+            bg.Coordinates.displacing(blade, SPACE, t, share)

@@ -9,18 +9,20 @@ the span they act.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from bladegen.airfoils.chord_lines import KEPT, known_convention
 from bladegen.blade.changes.affine_change import RANGES, AffineChange, Thickening, faded, in_units
+from bladegen.blade.changes.displacement import factors
 from bladegen.blade.changes.window import Window
 from bladegen.definition.blade_definition import Distribution, Interpolant, pchip
 from bladegen.errors import PerturbationError
 from bladegen.shapes import grassmann
 from bladegen.shapes.domain import BEYOND
 from bladegen.shapes.shape_space import ShapeSpace
-from bladegen.support.arguments import numbers, shown
+from bladegen.support.arguments import amount, numbers, shown
 from bladegen.support.arrays import Array, ArrayLike, readonly
 from bladegen.support.values import brief, equal, hashed
 
@@ -92,6 +94,66 @@ class Coordinates:
                 "bladegen.Coordinates(eta, values) holds others at other spans"
             )
         return cls(np.zeros(1), np.atleast_2d(values))
+
+    @classmethod
+    def displacing(
+        cls,
+        blade: Any,
+        space: ShapeSpace,
+        t: ArrayLike,
+        displacement: float,
+        *,
+        each: bool = False,
+        window: Window | None = None,
+        chord_line: str = KEPT,
+        spans: int = 41,
+    ) -> "Coordinates":
+        """Scale coordinates so that they move a blade's skin by a stated length.
+
+        |t| is an angle: the same t moves thick sections by more of their chord than thin ones.
+
+        Parameters
+        ----------
+        blade : Blade
+            What is to be perturbed.
+        space, t : ShapeSpace and (r,) array
+            The modes, and coordinates of which the direction counts.
+        displacement : float
+            The farthest that a point of a section moves along its normal [chord].
+        each : bool
+            Move each section so far, by coordinates that vary over span; if not, one multiple
+            of t for the whole blade moves that section so far which moves farthest.
+        window, chord_line : Window, str
+            As for `Blade.perturbed`; sections are looked at where the window acts fully.
+        spans : int
+            How many are looked at.
+
+        Raises
+        ------
+        PerturbationError
+            If no multiple of t does that.
+
+        >>> import bladegen as bg
+        >>> blade = bg.Blade.from_definition(bg.read("nrel5mw"))
+        >>> space = bg.ShapeSpace.bundled()
+        >>> t = bg.Coordinates.displacing(blade, space, [1, 0, 0, 0], 0.005)
+        >>> blade.perturbed(space, t).name
+        'nrel5mw'
+        """
+        if not amount(displacement, "displacement", PerturbationError) > 0.0:
+            raise PerturbationError(
+                f"displacement: got {displacement:g}, must be above 0, in chords; the sign is t's"
+            )
+        own = Window.beyond_circles(blade.definition.stations) if window is None else window
+        eta = blade.stations(spans)
+        eta = eta[own(eta) >= 1.0]
+        constant = cls.constant(t)
+        direction = cls(eta, np.repeat(constant.values, len(eta), axis=0))
+        how: dict[str, Any] = {"window": window, "chord_line": chord_line}
+        scale = factors(blade, space, direction, displacement, together=not each, **how)
+        if not each:
+            return cls.constant(scale[0] * constant.values[0])
+        return cls(eta, scale[:, None] * direction.values)
 
     def __call__(self, eta: Array) -> Array:
         """Return coordinates (k, r) at span fractions (k,)."""

@@ -23,6 +23,7 @@ __all__ = [
     "finish",
     "metres",
     "radians",
+    "share",
     "span_window",
     "suffixes",
 ]
@@ -135,6 +136,18 @@ def finish(text: str, field: str = "trailing-edge") -> TrailingEdge:
 
 _NAMED: dict[str, TrailingEdge] = {"given": AsGiven(), "sharp": Sharp()}
 _PER_CENT = re.compile(r"\s*([0-9]*\.?[0-9]+)\s*%\s*")
+
+
+def share(text: str, field: str) -> float:
+    """Return a share of a text in per cent.
+
+    >>> share("0.5%", "displacement")
+    0.005
+    """
+    match = _PER_CENT.fullmatch(text)
+    if match is None:
+        raise BladegenError(f"{field}: got {text!r}, must be a share of the chord, such as 0.5%")
+    return float(match[1]) / 100.0
 
 
 def factor_bounds(texts: Sequence[str], field: str = "vary") -> dict[str, tuple[float, float]]:

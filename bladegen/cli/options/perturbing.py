@@ -30,6 +30,14 @@ class Changes:
             help="Coordinates along the modes in rad; with @ETA repeated, knots over span.",
         ),
     ] = None
+    displacement: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SHARE%",
+            help="Scale --pga so that the skin moves by so much of the chord where it moves "
+            "farthest, such as 0.5%.",
+        ),
+    ] = None
     space: Annotated[
         Path | None, typer.Option(help="A space made by `space build`; the bundled one if not.")
     ] = None
@@ -128,6 +136,25 @@ class Changes:
 
         return ShapeSpace.load(self.space) if self.space else ShapeSpace.bundled()
 
+    def _displacing(self, blade: Any, space: Any, t: Any) -> Any:
+        """Return coordinates that move the skin of a blade by the displacement."""
+        from bladegen.blade.changes.deformation import Coordinates
+        from bladegen.cli.options.parsing import share, span_window
+
+        if t is None or len(t.grid) > 1:
+            raise BladegenError(
+                f"displacement: got {self.displacement}, scales --pga t1,t2,... without @ETA; "
+                "give that"
+            )
+        return Coordinates.displacing(
+            blade,
+            space,
+            t.values[0],
+            share(str(self.displacement), "displacement"),
+            window=None if self.window is None else span_window(self.window),
+            chord_line=self.chord_line,
+        )
+
     def on_the_skin(self, blade: Any) -> Any:
         """Return wear and dents together, None if there are none."""
         if self.deviation is None and self.deviation_scale != 1:
@@ -158,6 +185,8 @@ class Changes:
 
         t = coordinates(self.pga or [])
         space = None if t is None and self.space is None else self.shape_space()
+        if self.displacement is not None:
+            t = self._displacing(blade, space, t)
         amounts: dict[str, Any] = {key: float(getattr(self, key)) for key in AFFINE}
         amounts["twist"] = radians(self.twist)
         amounts |= over_span(self.over or [], [key for key in AFFINE if self._moved(key)])
